@@ -23,6 +23,7 @@ impl Batches {
             high: None,
             location: None,
             case: None,
+            since: None,
             points: Vec::new(),
         };
         Self { test, signals: signals.iter().map(batch).collect() }

@@ -96,7 +96,8 @@ impl MonitorReport<'_> {
             severity: self.monitor.severity,
             text: self.describe(violation),
             location: self.monitor.location.clone(),
-            interval: is_finite.then(|| Box::new(SignalInterval { start, end, signals })),
+            interval: is_finite
+                .then(|| Box::new(SignalInterval { since: None, start, end, signals })),
         });
     }
 

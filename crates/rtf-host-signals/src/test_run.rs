@@ -143,6 +143,7 @@ impl TestRun {
                     high: None,
                     location: measured.location,
                     case: None,
+                    since: None,
                     points: Vec::new(),
                 };
                 self.take(&samples, (TestQuantity::Measurement, &points), settings, session);

@@ -157,6 +157,7 @@ impl Sample<'_> {
             location,
             points: vec![point],
             case: None,
+            since: None,
         }
     }
 

@@ -319,3 +319,14 @@ pub enum EventKind {
         leaked: Vec<LeakedProcess>,
     },
 }
+
+impl EventKind {
+    /// A time since the start of the run that the event contains: the zero of other times in it.
+    pub fn since_mut(&mut self) -> Option<&mut Micros> {
+        match self {
+            Self::Sampled { samples, .. } => samples.since.as_mut(),
+            Self::Message { message, .. } => message.interval.as_mut()?.since.as_mut(),
+            _ => None,
+        }
+    }
+}

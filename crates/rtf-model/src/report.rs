@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::CaseId;
+use crate::{CaseId, Micros};
 
 /// A location in a plug-in's source.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -69,7 +69,10 @@ pub struct Message {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SignalInterval {
-    /// Its start, in the time of the signals' samples, in seconds.
+    /// The zero of its times, from the runner: when the test was announced to the fixture.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub since: Option<Micros>,
+    /// Its start, in seconds since the zero.
     pub start: f64,
     /// Its end, in the same time.
     pub end: f64,

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::report::is_within;
-use crate::{CaseId, Location, Measurement, format_rounded};
+use crate::{CaseId, Location, Measurement, Micros, format_rounded};
 
 /// A batch of samples of one signal, in the order in which they were taken, with the
 /// limits that each of them must keep. A host sends a signal in batches.
@@ -27,8 +27,12 @@ pub struct Samples {
     /// The case in which it was reported.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case: Option<CaseId>,
-    /// Each sample: its time in seconds since the test's set-up began, and its
-    /// value; `null` when that is not a finite number, which no limit accepts.
+    /// The zero of the points' times, from the runner: when the test was announced to the fixture
+    /// that took them. Without it, the test took them, and the zero is the start of its set-up.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub since: Option<Micros>,
+    /// Each sample: its time in seconds since the zero, and its value; `null` when that is not a
+    /// finite number, which no limit accepts.
     pub points: Vec<(f64, Option<f64>)>,
 }
 

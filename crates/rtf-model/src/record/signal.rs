@@ -1,6 +1,6 @@
 //! Statistics of a signal that an attempt sampled.
 
-use crate::{Location, Samples, format_rounded};
+use crate::{Location, Micros, Samples, format_rounded};
 
 /// Statistics of a signal that an attempt sampled. The samples are in the journal.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,8 +17,9 @@ pub struct SignalSummary {
     pub location: Option<Location>,
     /// Number of samples.
     pub count: u64,
-    /// The times of the first and the last sample, in seconds since the test's
-    /// set-up began.
+    /// The zero of times, as in [`Samples::since`].
+    pub since: Option<Micros>,
+    /// The times of the first and the last sample, in seconds since the zero.
     pub span: (f64, f64),
     /// The smallest finite value. The next three are finite, too.
     pub min: Option<f64>,
@@ -48,6 +49,7 @@ impl SignalSummary {
             high: None,
             location: samples.location.clone(),
             count: 0,
+            since: samples.since,
             span: (first, first),
             min: None,
             mean: None,

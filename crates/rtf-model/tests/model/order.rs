@@ -249,7 +249,7 @@ fn sampled() -> EventKind {
     let (unit, low, high, location, points) = (String::new(), None, None, None, Vec::new());
     EventKind::Sampled {
         test: TEST,
-        samples: Samples { name, unit, low, high, location, points, case: None },
+        samples: Samples { name, unit, low, high, location, points, case: None, since: None },
     }
 }
 

@@ -14,6 +14,7 @@ fn elbow(high: Option<f64>, points: &[(f64, Option<f64>)]) -> Samples {
         location: None,
         points: points.to_vec(),
         case: None,
+        since: None,
     }
 }
 

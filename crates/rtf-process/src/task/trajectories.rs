@@ -300,6 +300,7 @@ impl TrajectoryJob {
             high: None,
             location: self.check.location.clone(),
             case: self.check.case,
+            since: None,
             points: points.map(|(time, value)| (start + time, Some(value))).collect(),
         })
     }

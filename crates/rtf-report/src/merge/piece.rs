@@ -60,7 +60,11 @@ impl Piece {
                 return Ok(());
             }
             lives.follow(&mut kind);
-            out.now = Micros(begins.0 + at.0.saturating_sub(began.0));
+            let moved = |time: Micros| Micros(begins.0 + time.0.saturating_sub(began.0));
+            out.now = moved(at);
+            if let Some(since) = kind.since_mut() {
+                *since = moved(*since);
+            }
             if lives.episode_tests.as_mut().is_some_and(|tests| !tests.follow(&mut kind)) {
                 return Ok(());
             }

@@ -223,7 +223,7 @@ impl Writer {
         let time = |(n, value): (usize, &f64)| (from + 0.5 * n as f64, Some(*value));
         let points = values.iter().enumerate().map(time).collect();
         let (low, high, location) = (None, Some(1.5), None);
-        let samples = Samples { name, unit, low, high, location, points, case: None };
+        let samples = Samples { name, unit, low, high, location, points, case: None, since: None };
         self.emit(EventKind::Sampled { test: TEST, samples });
     }
 

@@ -173,9 +173,11 @@ fn the_processes_of_a_fixture_are_measured() {
     let load = series(&journal, 0, "load");
     assert!(load.max.unwrap() > 0.0, "{load:?}");
     let memory = series(&journal, 0, "memory");
-    assert!(memory.min.unwrap() > 1.0 && memory.max.unwrap() < 200.0, "{memory:?}");
+    // The process may just have been started: only its largest size is that of Python.
+    assert!(memory.min.unwrap() > 0.0, "{memory:?}");
+    assert!((1.0..200.0).contains(&memory.max.unwrap()), "{memory:?}");
     assert_eq!(memory.unit, "MiB");
-    assert!(series(&journal, 0, "files").min.unwrap() >= 3.0);
+    assert!(series(&journal, 0, "files").max.unwrap() >= 3.0);
 }
 
 /// What a program does, and the reason of the collapse or the failed set-up.

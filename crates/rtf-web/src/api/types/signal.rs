@@ -43,7 +43,11 @@ pub struct Signal {
     /// What is wrong with the first of them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
-    /// The times of the curve's points, in seconds since the test's set-up began.
+    /// The zero of times, in microseconds since the run started; without it, the start of the
+    /// test's set-up.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub since: Option<u64>,
+    /// The times of the curve's points, in seconds since the zero.
     pub times: Vec<f64>,
     /// The values of the curve's points.
     pub values: Vec<f64>,
@@ -80,7 +84,23 @@ impl Signal {
     fn of(series: SignalSummary, curve: &SignalOutline) -> Self {
         let (times, values) = curve.points().into_iter().unzip();
         let SignalSummary { name, unit, low, high, count, min, mean, max, last, .. } = series;
+        let since = series.since.map(|since| since.0);
         let (outside, problem) = (series.outside, series.problem);
-        Self { name, unit, low, high, count, min, mean, max, last, outside, problem, times, values }
+        Self {
+            name,
+            unit,
+            low,
+            high,
+            count,
+            min,
+            mean,
+            max,
+            last,
+            outside,
+            problem,
+            since,
+            times,
+            values,
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! A test that has begun and has attempts left.
 
+use std::time::Duration;
+
 use rtf_model::protocol::TestAttempt;
 
 use crate::run::machine::test::{CarriedCases, TestRun};
@@ -41,6 +43,8 @@ pub(super) struct ActiveTest<'p> {
     pub is_delayed: bool,
     /// Whether fixtures were notified of the next attempt.
     pub is_notified: bool,
+    /// When that was, since the run started.
+    pub announced: Duration,
     /// The cases that the next attempt does not run again.
     pub carried: Option<Box<CarriedCases>>,
     /// Why a user stopped it: no repetition follows.

@@ -2,7 +2,7 @@
 //! found. `judge` decides what a problem means for the verdict.
 
 use rtf_model::protocol::Notification;
-use rtf_model::{EventKind, FaultInjected, Finding, Samples, Source, TestId};
+use rtf_model::{EventKind, FaultInjected, Finding, Micros, Samples, Source, TestId};
 
 use super::SuiteMachine;
 use crate::run::machine::context::{Context, error_message};
@@ -88,7 +88,15 @@ impl SuiteMachine<'_> {
         }
     }
 
-    fn on_finding(&mut self, fixture: usize, finding: Finding, cx: &mut Context<'_>) {
+    /// When fixtures were notified that a test is about to start.
+    fn announced(&mut self, test: TestId) -> Option<Micros> {
+        self.scheduler.get(test).map(|active| active.announced.into())
+    }
+
+    fn on_finding(&mut self, fixture: usize, mut finding: Finding, cx: &mut Context<'_>) {
+        if let Some(interval) = &mut finding.interval {
+            interval.since = self.announced(finding.test);
+        }
         match self.scheduler.run_of(finding.test).filter(|run| !run.is_judged()) {
             Some(run) => run.on_finding(finding, cx),
             None => {
@@ -107,6 +115,7 @@ impl SuiteMachine<'_> {
     ) {
         if self.scheduler.run_of(test).is_some() {
             samples.case = None;
+            samples.since = self.announced(test);
             cx.emit(EventKind::Sampled { test, samples });
         } else {
             let what = format!("samples of `{}`", samples.name);

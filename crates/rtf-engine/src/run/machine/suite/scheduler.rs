@@ -194,10 +194,11 @@ impl<'p> Scheduler<'p> {
     }
 
     /// The next due attempt of which fixtures have to be notified.
-    pub fn next_to_notify(&mut self) -> Option<TestAttempt> {
+    pub fn next_to_notify(&mut self, now: Duration) -> Option<TestAttempt> {
         let mut all = self.active.iter_mut();
         let active = all.find(|active| active.is_due() && !active.is_notified)?;
         active.is_notified = true;
+        active.announced = now;
         Some(active.attempt())
     }
 
@@ -244,6 +245,7 @@ impl<'p> Scheduler<'p> {
                 run: None,
                 is_delayed: false,
                 is_notified: false,
+                announced: Duration::ZERO,
                 carried: None,
                 stop_reason: None,
             });

@@ -44,7 +44,7 @@ impl SuiteMachine<'_> {
     /// pending; false if none was started.
     pub(super) fn notify_then_start(&mut self, cx: &mut Context<'_>) -> bool {
         while self.scheduler.begin_next() {}
-        while let Some(test) = self.scheduler.next_to_notify() {
+        while let Some(test) = self.scheduler.next_to_notify(cx.now()) {
             let topic = (Subscription::TestStarted, test.id);
             if self.fixtures.any_subscribes_to(topic.0) {
                 let notification = Request::TestStarted(TestStartedParams { test });

@@ -24,6 +24,7 @@ impl TestRun<'_> {
             }
             Notification::Sampled(mut samples) => {
                 samples.case = self.cases.open(samples.case);
+                samples.since = None;
                 let problem = (samples.problem(), samples.case);
                 self.record(problem, EventKind::Sampled { test, samples }, cx);
             }

@@ -3,8 +3,8 @@
 use insta::assert_snapshot;
 use rtf_model::protocol::{MonitorDeclaration, Notification, Reply, Request, TestReport};
 use rtf_model::{
-    ExitStatus, Finding, FindingSeverity, FixtureId, HookId, Measurement, Phase, Source, TestId,
-    Trigger, Verdict,
+    ExitStatus, Finding, FindingSeverity, FixtureId, HookId, Measurement, Micros, Phase, Source,
+    TestId, Trigger, Verdict,
 };
 
 use super::world::{SECOND, TEST, World, hook, suite};
@@ -97,7 +97,7 @@ fn a_test_with_a_failure_continues_and_fails() {
     answer_ended(&mut world);
     tear_down(&mut world);
     assert_snapshot!(world.transcript(), @"
-    0.0  sampled samples={name:q,points:[[0.4,1.1],[0.41,1.2]],unit:rad} test=0
+    0.0  sampled samples={name:q,points:[[0.4,1.1],[0.41,1.2]],since:0,unit:rad} test=0
     0.0  message source={test:0}
     0.0  test-phase phase=tear-down test=0
     0.0    → close the channel
@@ -112,6 +112,27 @@ fn a_test_with_a_failure_continues_and_fails() {
     assert_eq!(attempt.series[0].count, 2);
     assert_eq!(attempt.measurements[0].name, "monitor/no overshoot");
     assert_eq!(attempt.messages[0].text, "`q` is 1.3 rad at 0.42 s");
+}
+
+/// Not from the start of the test, which waits for all fixtures, or from its set-up.
+#[test]
+fn times_of_a_watcher_count_from_the_announcement() {
+    let plan = suite(1, 1);
+    let mut world = World::started(&plan);
+    let value = serde_json::json!({ "outcome": "passed", "subscriptions": ["test-started"] });
+    world.input(WATCHER, ProcessEvent::Replied(2, Reply::Result(value)));
+    world.now = SECOND;
+    world.answer(WATCHER, "passed");
+    world.now = 2 * SECOND;
+    answer_notifications(&mut world);
+    world.now = 3 * SECOND;
+    world.phase(TEST, Phase::Setup);
+    observe(&mut world, 0);
+    let finding = r#"{"test":0,"severity":"fail","text":"high","interval":{"start":1.9,"end":2,"signals":["q"]}}"#;
+    let finding = Notification::Finding(serde_json::from_str(finding).unwrap());
+    world.input(WATCHER, ProcessEvent::Notified(finding));
+    let times: Vec<_> = world.events.iter_mut().filter_map(|event| event.since_mut()).collect();
+    assert_eq!(times, [&Micros::from(SECOND), &Micros::from(SECOND)]);
 }
 
 /// The verdict is that of the severity in every phase.
