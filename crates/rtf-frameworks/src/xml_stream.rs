@@ -11,6 +11,9 @@ use crate::framework::Garbage;
 /// The longest text or tag.
 const MAX_TOKEN_BYTES: usize = 16 << 20;
 
+/// The mark with which a document in UTF-8 may begin.
+const BYTE_ORDER_MARK: &str = "\u{feff}";
+
 /// How much of a bad line an error quotes.
 const QUOTED_CHARS: usize = 200;
 
@@ -48,6 +51,8 @@ pub enum XmlEvent {
 /// A parser for one document.
 #[derive(Debug, Default)]
 pub struct XmlStream {
+    /// Whether the document has begun, with or without a byte order mark.
+    has_begun: bool,
     /// The end of the input that is no complete tag yet, and the text before it.
     buffer: Vec<u8>,
     /// How many bytes of the buffer were searched.
@@ -67,17 +72,22 @@ impl XmlStream {
     /// The document is not well-formed, or something follows it.
     pub fn feed(&mut self, bytes: &[u8], events: &mut Vec<XmlEvent>) -> Result<(), Garbage> {
         self.buffer.extend_from_slice(bytes);
-        let complete = self.complete_len();
-        let rest = self.buffer.split_off(complete);
-        let tokens = std::mem::replace(&mut self.buffer, rest);
-        self.searched = 0;
-        if !tokens.is_empty() {
-            self.parse(&String::from_utf8_lossy(&tokens), events)?;
-            self.lines += newlines(&tokens);
+        if !self.has_begun && !self.begin() {
+            return Ok(());
         }
+        let mut at = 0;
+        while let Some(end) = self.token_end(at) {
+            // Each token has a parser, so that the size of the pieces cannot matter.
+            let token = String::from_utf8_lossy(&self.buffer[at..end]).into_owned();
+            self.parse(&token, events)?;
+            self.lines += newlines(&self.buffer[at..end]);
+            at = end;
+        }
+        self.buffer.drain(..at);
+        self.searched -= at;
         let is_outside = self.open.is_empty();
         let start = self.buffer.trim_ascii_start();
-        if is_outside && start.first().is_some_and(|first| self.is_complete || *first != b'<') {
+        if is_outside && start.first().is_some_and(|first| *first != b'<') {
             let blank = self.buffer.len() - start.len();
             return Err(self.garbage(&String::from_utf8_lossy(&self.buffer), blank));
         }
@@ -88,29 +98,42 @@ impl XmlStream {
         Ok(())
     }
 
-    /// Whether the document has ended.
+    /// Whether the document has ended, and nothing follows it.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        self.is_complete
+        self.is_complete && self.buffer.trim_ascii().is_empty()
     }
 
-    /// The length of the complete tags in the buffer, with the text before them.
-    fn complete_len(&mut self) -> usize {
-        let mut complete = 0;
-        let mut at = self.searched;
-        while let Some(start) = find(&self.buffer, b"<", at) {
-            at = start;
-            let Some(end) = tag_end(&self.buffer, start) else { break };
-            (complete, at) = (end, end);
+    /// Skips a byte order mark; false if it cannot yet be known whether there is one.
+    fn begin(&mut self) -> bool {
+        let mark = BYTE_ORDER_MARK.as_bytes();
+        if self.buffer.len() < mark.len() && mark.starts_with(&self.buffer) {
+            return false;
         }
-        self.searched = at.max(complete);
-        complete
+        self.has_begun = true;
+        if self.buffer.starts_with(mark) {
+            self.buffer.drain(..mark.len());
+        }
+        true
     }
 
+    /// The end of the tag in the buffer after this position; `None` if it has not arrived.
+    fn token_end(&mut self, from: usize) -> Option<usize> {
+        let start = find(&self.buffer, b"<", self.searched.max(from));
+        let end = start.and_then(|start| tag_end(&self.buffer, start));
+        self.searched = end.or(start).unwrap_or(self.buffer.len());
+        end
+    }
+
+    /// Parses a tag and the text before it.
     fn parse(&mut self, text: &str, events: &mut Vec<XmlEvent>) -> Result<(), Garbage> {
+        // The parser would skip the mark, because it does not know what precedes the token.
+        if text.starts_with(BYTE_ORDER_MARK) && !self.text(BYTE_ORDER_MARK) {
+            return Err(self.garbage(text, 0));
+        }
         let mut reader = Reader::from_str(text);
         let config = reader.config_mut();
-        // Elements are open across pieces.
+        // Elements are open across tokens.
         config.allow_unmatched_ends = true;
         config.check_end_names = false;
         loop {
@@ -124,8 +147,8 @@ impl XmlStream {
                 Event::Text(part) => self.text(&part.xml10_content()),
                 Event::CData(part) => self.text(&part.xml10_content()),
                 Event::GeneralRef(part) => match resolve(&part) {
-                    Some(part) => self.text(&part),
-                    None => false,
+                    Some(part) if !self.open.is_empty() => self.text(&part),
+                    _ => false,
                 },
                 Event::Decl(_) | Event::PI(_) | Event::DocType(_) => self.open.is_empty(),
                 Event::Comment(_) => true,

@@ -37,6 +37,24 @@ fn a_document_has_the_same_events_in_pieces_of_any_size() {
 }
 
 #[test]
+fn marks_comments_and_references_do_not_depend_on_the_pieces() {
+    let cases: [(&str, &[&str], bool); 5] = [
+        ("\u{feff}<run>\u{feff}a</run>", &["<run", "\u{feff}a>run"], true),
+        ("<run>b\u{feff}<!-- c -->\u{feff}</run>", &["<run", "b\u{feff}\u{feff}>run"], true),
+        ("<run/>\n<!-- c --> <?end?>", &["<run", ">run"], true),
+        ("<run/>\u{feff}", &["<run", ">run"], false),
+        ("&#10;<run/>", &[], false),
+    ];
+    for (document, expected, is_good) in cases {
+        for piece in 1..=document.len() {
+            let (events, error) = read(document.as_bytes(), piece);
+            assert_eq!(events, expected, "{document:?} in pieces of {piece}");
+            assert_eq!(error.is_none(), is_good, "{document:?} in pieces of {piece}: {error:?}");
+        }
+    }
+}
+
+#[test]
 fn an_element_is_reported_as_soon_as_its_tag_is_complete() {
     let (mut stream, mut events) = (XmlStream::default(), Vec::new());
     stream.feed(b"<run><case na", &mut events).expect("good");
