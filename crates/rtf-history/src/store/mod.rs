@@ -42,8 +42,9 @@ const RETRY_INTERVAL: Duration = Duration::from_millis(10);
 /// of a large run fits into it.
 const CHECKPOINT_PAGES: i64 = 8000;
 
-/// The same for a log that stays when the database is closed.
-const KEPT_PAGES: i64 = 250;
+/// A longer log, in bytes, does not stay when the database is closed: opening it reads the log,
+/// and does not know which part was copied before.
+const KEPT_BYTES: u64 = 1 << 20;
 
 /// Number of statements that remain prepared.
 const STATEMENTS: usize = 64;
@@ -147,18 +148,21 @@ impl Store {
     }
 
     /// Leaves the write-ahead log when the store is closed, so that closing waits for no disk.
-    /// A store that is opened for a question copies it into the database. The log stays short,
-    /// because opening the database reads it.
+    /// A store that is opened for a question copies it into the database, and so does this one
+    /// if the log has become long.
     ///
     /// # Errors
-    /// The database cannot be written.
+    /// The database cannot be opened any more.
     pub fn keep_log(&self) -> Result<(), StoreError> {
-        let Database::Sqlite(connection) = &self.database else { return Ok(()) };
-        let keep = || -> rusqlite::Result<()> {
-            connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
-            connection.pragma_update(None, "wal_autocheckpoint", KEPT_PAGES)
+        let (Database::Sqlite(connection), Location::File(path)) = (&self.database, &self.location)
+        else {
+            return Ok(());
         };
-        keep().map_err(|error| self.error(error))
+        let mut log = path.clone().into_os_string();
+        log.push("-wal");
+        let is_short = fs::metadata(log).is_ok_and(|log| log.len() < KEPT_BYTES);
+        let kept = connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, is_short);
+        kept.map(drop).map_err(|error| self.error(error))
     }
 
     /// Where the database is.

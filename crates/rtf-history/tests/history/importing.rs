@@ -187,3 +187,25 @@ fn a_log_that_stays_is_read_by_the_next_process() {
     drop(store);
     assert!(!log.exists(), "a question copies it");
 }
+
+#[test]
+fn a_log_that_stays_does_not_grow_with_each_run() {
+    let dir = tempfile::tempdir().expect("a directory");
+    let path = dir.path().join("history.db");
+    let all = runs(200);
+    let (mut previous, mut largest, mut copied) = (0, 0, 0);
+    for run in &all {
+        let mut store = Store::open(&path).expect("a store");
+        store.keep_log().expect("an option");
+        store.import(&run.record()).expect("an import");
+        drop(store);
+        let log = dir.path().join("history.db-wal").metadata().map_or(0, |log| log.len());
+        copied += u64::from(log < previous);
+        largest = largest.max(log);
+        previous = log;
+    }
+    assert!(largest < 3 << 20, "{largest} bytes");
+    assert!((1..all.len() as u64 / 4).contains(&copied), "copied {copied} times");
+    let store = Store::open_existing(&path).expect("a store");
+    assert_eq!(dump(&store), World::with(&all).dump());
+}
