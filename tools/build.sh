@@ -9,5 +9,6 @@
 unset SOURCE_DATE_EPOCH
 
 [ "${RTF_PAGE:-}" = none ] || tools/web.sh
-cargo build --release --locked --bins
+# Without the generators of schemas and headers, which are used while the project is developed.
+cargo build --release --locked --workspace --exclude xtask --bins
 tools/preload.sh

@@ -76,8 +76,9 @@ def main() -> None:
 def build() -> Path:
     """Compiles the targets. Only the workspace's own libraries have counters."""
     environment = {**os.environ, "RUSTC_WORKSPACE_WRAPPER": str(ROOT / "tools" / "fuzz_rustc.sh")}
-    # All packages, because the features of libraries are then those of tools/build.sh.
-    command = ["cargo", "build", "--workspace", "--locked", "--release", "--bin", "fuzz"]
+    # These packages, because the features of libraries are then those of tools/build.sh.
+    command = ["cargo", "build", "--workspace", "--exclude", "xtask", "--locked", "--release"]
+    command += ["--bin", "fuzz"]
     command += ["--features", "rtf-fuzz/libfuzzer", "--message-format", "json-render-diagnostics"]
     built = subprocess.run(command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, check=True)
     messages = [json.loads(line) for line in built.stdout.splitlines()]

@@ -11,6 +11,7 @@ from measuring.model import Group
 
 from lines import (
     campaigns,
+    clients,
     collapse,
     frameworks,
     history,
@@ -37,6 +38,7 @@ MODULES = (
     signals,
     page,
     watched,
+    clients,
     campaigns,
     slurm,
 )

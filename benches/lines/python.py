@@ -1,4 +1,4 @@
-"""Trivial Python tests, with a process each or a shared one.
+"""Trivial Python tests, with a process each or a shared one: a further test, and a run.
 
 They are a separate group with fewer rounds, because starting an interpreter takes long.
 """
@@ -9,12 +9,16 @@ import sys
 from collections.abc import Callable
 
 from measuring import suite
-from measuring.bench import Bench, Launched
+from measuring.bench import Bench
 from measuring.model import Group, Limit, Line, MeasuringError, Samples, Work
+from measuring.slope import FIXED, FURTHER, by_count
 
-COUNT = 1000
-BARE_COUNT = 50
-UNIT = "ms a test"
+FEW = 1000
+MANY = 10_000
+# pytest needs minutes to fork for each of 10 000 tests.
+MANY_PROCESSES = 3000
+BARE_FEW = 10
+BARE_MANY = 60
 
 BARE = "python3 -c pass"
 FORKED = "pytest --forked"
@@ -28,45 +32,46 @@ def group(bench: Bench) -> Group:
     missing = "" if bench.pytest else "pytest is not installed"
     bare = [sys.executable, "-c", "pass"]
     works = (
-        Work(BARE, lambda: a_test(bench.launch(bare, BARE_COUNT), BARE_COUNT)),
-        Work(FORKED, pytest(bench, "--forked"), missing),
-        Work(IN_PROCESS, pytest(bench), missing),
-        Work(RTF, rtf(bench, "process")),
-        Work(RTF_SHARED, rtf(bench, "shared")),
+        Work(BARE, lambda: by_count(lambda n: bench.launch(bare, n).seconds, BARE_FEW, BARE_MANY)),
+        Work(FORKED, pytest(bench, MANY_PROCESSES, "--forked"), missing),
+        Work(IN_PROCESS, pytest(bench, MANY), missing),
+        Work(RTF, rtf(bench, MANY_PROCESSES, "process")),
+        Work(RTF_SHARED, rtf(bench, MANY, "shared")),
     )
     quarter = Limit(0.25, of_ratio=True, required=False)
     lines = (
-        Line(f"{COUNT} Python tests, own process each", RTF, UNIT, FORKED, quarter),
-        Line(f"{COUNT} Python tests, own process, compared with the interpreter", RTF, UNIT, BARE),
-        Line(f"{COUNT} Python tests, shared", RTF_SHARED, UNIT, IN_PROCESS, quarter),
+        Line("Python test, own process", RTF, FURTHER, FORKED, quarter),
+        Line("Python test, own process, compared with the interpreter", RTF, FURTHER, BARE),
+        Line("Python test, shared", RTF_SHARED, FURTHER, IN_PROCESS, quarter),
+        Line("Python tests, own process: fixed cost", RTF, FIXED, FORKED),
+        Line("Python tests, shared: fixed cost", RTF_SHARED, FIXED, IN_PROCESS),
     )
     return Group("python", works, lines, rounds=3, warm_up=False)
 
 
-def rtf(bench: Bench, isolation: str) -> Callable[[], Samples]:
+def rtf(bench: Bench, many: int, isolation: str) -> Callable[[], Samples]:
     """Runs the tests with rtf."""
-    elements = suite.tests("python", "Trivial", COUNT, isolation)
-    file = suite.write(bench, f"trivial-python-{isolation}", elements)
-    return lambda: a_test(suite.run_passing(bench, file, COUNT))
+
+    def seconds(count: int) -> float:
+        elements = suite.tests("python", "Trivial", count, isolation)
+        file = suite.write(bench, f"trivial-python-{isolation}", elements)
+        return suite.run_passing(bench, file, count).seconds
+
+    return lambda: by_count(seconds, FEW, many)
 
 
-def pytest(bench: Bench, *options: str) -> Callable[[], Samples]:
+def pytest(bench: Bench, many: int, *options: str) -> Callable[[], Samples]:
     """Runs as many functions with pytest, without its cache."""
     directory = bench.directory / "pytest"
     directory.mkdir(exist_ok=True)
-    functions = "".join(f"def test_{n:06}():\n    assert True\n\n\n" for n in range(COUNT))
-    (directory / "test_trivial.py").write_text(functions, encoding="utf-8")
     command = [bench.pytest, "-q", "-p", "no:cacheprovider", *options, str(directory)]
 
-    def work() -> Samples:
+    def seconds(count: int) -> float:
+        functions = "".join(f"def test_{n:06}():\n    assert True\n\n\n" for n in range(count))
+        (directory / "test_trivial.py").write_text(functions, encoding="utf-8")
         launched = bench.launch(command)
-        if f"{COUNT} passed" not in launched.output:
-            raise MeasuringError(f"pytest did not pass {COUNT} tests:\n{launched.output}")
-        return a_test(launched)
+        if f"{count} passed" not in launched.output:
+            raise MeasuringError(f"pytest did not pass {count} tests:\n{launched.output}")
+        return launched.seconds
 
-    return work
-
-
-def a_test(launched: Launched, count: int = COUNT) -> Samples:
-    """The time per test."""
-    return {UNIT: [launched.seconds * 1e3 / count]}
+    return lambda: by_count(seconds, FEW, many)

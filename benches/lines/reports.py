@@ -1,4 +1,4 @@
-"""A test that reports a million times, and one with 100 000 cases."""
+"""A test that reports or samples a million times, and one with 100 000 cases."""
 
 from __future__ import annotations
 
@@ -6,16 +6,18 @@ from collections.abc import Callable
 
 from measuring import suite
 from measuring.bench import PREDECESSOR, Bench
-from measuring.model import Group, Limit, Line, Samples, Work
+from measuring.model import Group, Limit, Line, MeasuringError, Samples, Work
 
 COUNT = 1_000_000
 CASES = 100_000
 RATE = "events/s"
+SAMPLE_RATE = "samples/s"
 CASE_RATE = "cases/s"
 MEMORY = "MB"
 
 RTF = "rtf"
 OLD = "predecessor"
+WITH_SAMPLES = "samples"
 WITH_CASES = "cases"
 
 
@@ -25,14 +27,19 @@ def group(bench: Bench) -> Group:
     works = (
         Work(RTF, rtf(bench)),
         Work(OLD, predecessor(bench), missing),
+        Work(WITH_SAMPLES, samples(bench)),
         Work(WITH_CASES, cases(bench)),
     )
     rate = Limit(300_000, at_least=True, required=False)
+    at_par = Limit(1.0, of_ratio=True, at_least=True, required=False)
+    sample_rate = Limit(1_000_000, at_least=True, required=False)
     memory = Limit(100, required=False)
     cases_rate = Limit(150_000, at_least=True)
     lines = (
         Line("1 M reports, journal and console", RTF, RATE, OLD, rate),
+        Line("1 M reports, compared with the predecessor", RTF, RATE, OLD, at_par),
         Line("1 M reports, memory", RTF, MEMORY, OLD, memory),
+        Line("1 M samples, journal and console", WITH_SAMPLES, SAMPLE_RATE, limit=sample_rate),
         Line("100 000 cases, journal and console", WITH_CASES, CASE_RATE, limit=cases_rate),
     )
     return Group("reports", works, lines, rounds=3)
@@ -47,6 +54,21 @@ def rtf(bench: Bench) -> Callable[[], Samples]:
             run.expect("message", COUNT)
             launched = run.launched
         return {RATE: [COUNT / launched.seconds], MEMORY: [launched.children[0].rss_mb]}
+
+    return work
+
+
+def samples(bench: Bench) -> Callable[[], Samples]:
+    """The journal must have all values of the signal."""
+    file = suite.write(bench, "samples", [f'<test type="dll" param="{COUNT}">Samples</test>'])
+
+    def work() -> Samples:
+        with suite.Run(bench, file) as run:
+            batches = [event["samples"] for event in run.events() if "samples" in event]
+            found = sum(len(batch["points"]) for batch in batches if isinstance(batch, dict))
+            if found != COUNT:
+                raise MeasuringError(f"{found} samples in the journal, not {COUNT}")
+            return {SAMPLE_RATE: [COUNT / run.launched.seconds]}
 
     return work
 

@@ -25,7 +25,7 @@ def group(bench: Bench) -> Group:
     lines = (
         Line("rtf --version", VERSION, UNIT, SPAWN, Limit(10)),
         Line("rtf --version: goal", VERSION, UNIT, SPAWN, Limit(5, required=False)),
-        Line("rtf run of one trivial test", ONE_TEST, UNIT, SPAWN, Limit(25, required=False)),
+        Line("rtf run of one trivial test", ONE_TEST, UNIT, SPAWN, Limit(6, required=False)),
     )
     return Group("start", works, lines)
 

@@ -29,7 +29,7 @@ def build(bench: Bench) -> None:
         [*C, *MODULE, *INCLUDES, *source("Killer.c"), *output(bench, "Killer.so")],
         [*CPP, *source("program.cpp"), *output(bench, "program")],
     ]
-    for name in ("Trivial", "Fails", "Reports", "Cases", "VictimFixture"):
+    for name in ("Trivial", "Fails", "Reports", "Samples", "Cases", "VictimFixture"):
         commands.append(
             [*CPP, *MODULE, *INCLUDES, *source(f"{name}.cpp"), *output(bench, f"{name}.so")]
         )

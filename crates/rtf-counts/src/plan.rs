@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
+use jiff::civil::date;
 use rtf_plan::plan::{self, InputPath, Options, RunnerEnvironment};
 
 const TESTS: usize = 10_000;
@@ -32,7 +33,7 @@ pub fn run(folder: &Path) -> Result<(), Box<dyn Error>> {
         variables: [("PATH".to_owned(), String::new())].into_iter().collect(),
     };
     let requests = [InputPath::Any(suite)];
-    let outcome = plan::draft(&requests, &Options::new(surroundings)).unchecked();
+    let outcome = plan::draft(&requests, &Options::new(surroundings, date(2026, 7, 1))).unchecked();
     match outcome.plan {
         Some(plan) if plan.tests as usize == TESTS => Ok(()),
         _ => Err(format!("no plan of {TESTS} tests: {:?}", outcome.diagnostics.first()).into()),

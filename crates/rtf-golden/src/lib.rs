@@ -5,6 +5,7 @@
 //! clock; depends on no other crate of the project.
 
 mod picture;
+mod pixels;
 mod reference;
 mod similarity;
 mod thin;

@@ -1,8 +1,6 @@
 //! Pictures of tests, decoded within limits.
 
-use std::io::Cursor;
-
-use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbImage};
+use crate::pixels::{Format, Pixels};
 
 /// The largest file of a picture, in bytes.
 pub const MAX_PICTURE_BYTES: u64 = 64 * 1024 * 1024;
@@ -14,13 +12,13 @@ const MAX_PIXELS: u64 = 1 << 24;
 const MIN_SIDE: u32 = 11;
 
 /// The most memory for decoding, in bytes: each pixel has at most four channels of 16 bits.
-const MAX_MEMORY: u64 = 3 * 8 * MAX_PIXELS;
+const MAX_MEMORY: usize = 3 * 8 * MAX_PIXELS as usize;
 
 /// A picture with 8 bits for red, green and blue.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    pub(crate) pixels: RgbImage,
-    format: ImageFormat,
+    pub(crate) pixels: Pixels,
+    format: Format,
 }
 
 /// Why pictures cannot be compared.
@@ -31,7 +29,7 @@ pub enum PictureError {
     Format,
     /// The file is damaged.
     #[error("it is damaged: {0}")]
-    Damaged(ImageError),
+    Damaged(String),
     /// It has too many pixels.
     #[error("it has {0} × {1} pixels, the limit is {MAX_PIXELS} pixels")]
     TooLarge(u32, u32),
@@ -48,7 +46,7 @@ pub enum PictureError {
     },
     /// A picture cannot be written.
     #[error("the difference cannot be written: {0}")]
-    Write(ImageError),
+    Write(String),
 }
 
 impl Picture {
@@ -57,36 +55,35 @@ impl Picture {
     /// # Errors
     /// It has another format, is damaged, too large or too small.
     pub fn decode(file: &[u8]) -> Result<Self, PictureError> {
-        let format = match image::guess_format(file) {
-            Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
-            _ => return Err(PictureError::Format),
-        };
-        let mut reader = ImageReader::with_format(Cursor::new(file), format);
-        let mut limits = Limits::default();
-        limits.max_alloc = Some(MAX_MEMORY);
-        reader.limits(limits);
-        let decoder = reader.into_decoder().map_err(PictureError::Damaged)?;
-        let (width, height) = decoder.dimensions();
-        if u64::from(width) * u64::from(height) > MAX_PIXELS {
-            return Err(PictureError::TooLarge(width, height));
-        }
-        if width.min(height) < MIN_SIDE {
-            return Err(PictureError::TooSmall(width, height));
-        }
-        let decoded = DynamicImage::from_decoder(decoder).map_err(PictureError::Damaged)?;
-        Ok(Self { pixels: decoded.into_rgb8(), format })
+        let format = Format::of(file).ok_or(PictureError::Format)?;
+        let pixels = Pixels::decode(file, format, MAX_MEMORY, |(width, height)| {
+            if u64::from(width) * u64::from(height) > MAX_PIXELS {
+                return Err(PictureError::TooLarge(width, height));
+            }
+            if width.min(height) < MIN_SIDE {
+                return Err(PictureError::TooSmall(width, height));
+            }
+            Ok(())
+        })?;
+        Ok(Self { pixels, format })
     }
 
     /// The media type of its file: `image/png` or `image/jpeg`.
     #[must_use]
     pub fn media_type(&self) -> &'static str {
-        self.format.to_mime_type()
+        match self.format {
+            Format::Png => "image/png",
+            Format::Jpeg => "image/jpeg",
+        }
     }
 
     /// The usual ending of its file: `png` or `jpg`.
     #[must_use]
     pub fn ending(&self) -> &'static str {
-        if self.format == ImageFormat::Png { "png" } else { "jpg" }
+        match self.format {
+            Format::Png => "png",
+            Format::Jpeg => "jpg",
+        }
     }
 }
 
@@ -95,9 +92,7 @@ mod tests {
     use super::*;
 
     fn png(width: u32, height: u32) -> Vec<u8> {
-        let mut file = Cursor::new(Vec::new());
-        RgbImage::new(width, height).write_to(&mut file, ImageFormat::Png).unwrap();
-        file.into_inner()
+        Pixels::draw((width, height), |_, _| [0; 3]).to_png().unwrap()
     }
 
     fn error(file: &[u8]) -> String {

@@ -2,11 +2,9 @@
 //! from error visibility to structural similarity*, IEEE Transactions on Image Processing 13, 2004.
 
 use std::collections::VecDeque;
-use std::io::Cursor;
-
-use image::{ImageFormat, Rgb, RgbImage};
 
 use crate::picture::{Picture, PictureError};
+use crate::pixels::Pixels;
 
 /// Pixels between the middle and the border of a window.
 const RADIUS: usize = 5;
@@ -38,12 +36,11 @@ impl PictureDifference {
     /// Their sizes differ.
     pub fn of(got: &Picture, expected: &Picture) -> Result<Self, PictureError> {
         let (got, expected) = (&got.pixels, &expected.pixels);
-        if got.dimensions() != expected.dimensions() {
-            let (got, expected) = (got.dimensions(), expected.dimensions());
-            return Err(PictureError::Sizes { got, expected });
+        if got.size != expected.size {
+            return Err(PictureError::Sizes { got: got.size, expected: expected.size });
         }
-        let columns = got.width() as usize - 2 * RADIUS;
-        let rows = got.height() as usize - 2 * RADIUS;
+        let columns = got.size.0 as usize - 2 * RADIUS;
+        let rows = got.size.1 as usize - 2 * RADIUS;
         let mut local = vec![0.0f32; columns * rows];
         let mut sum = 0.0;
         for colour in 0..3 {
@@ -65,29 +62,27 @@ impl PictureDifference {
     /// # Errors
     /// It cannot be written.
     pub fn picture(&self, expected: &Picture) -> Result<Vec<u8>, PictureError> {
-        let (width, height) = expected.pixels.dimensions();
+        let (width, height) = expected.pixels.size;
         let columns = width as usize - 2 * RADIUS;
         let rows = height as usize - 2 * RADIUS;
-        let drawn = RgbImage::from_fn(width, height, |x, y| {
+        let drawn = Pixels::draw((width, height), |x, y| {
             // A pixel at the border has the difference of the nearest window.
             let column = (x as usize).saturating_sub(RADIUS).min(columns - 1);
             let row = (y as usize).saturating_sub(RADIUS).min(rows - 1);
             let difference = f64::from(self.local[row * columns + column]).clamp(0.0, 1.0);
-            let [red, green, blue] = expected.pixels[(x, y)].0.map(f64::from);
+            let [red, green, blue] = expected.pixels.at(x, y).map(f64::from);
             let grey = 128.0 + 0.5 * (0.299 * red + 0.587 * green + 0.114 * blue);
             let other = (grey * (1.0 - difference)) as u8;
-            Rgb([(grey + (255.0 - grey) * difference) as u8, other, other])
+            [(grey + (255.0 - grey) * difference) as u8, other, other]
         });
-        let mut file = Cursor::new(Vec::new());
-        drawn.write_to(&mut file, ImageFormat::Png).map_err(PictureError::Write)?;
-        Ok(file.into_inner())
+        drawn.to_png()
     }
 }
 
 /// The windows of one colour.
 struct Windows<'a> {
-    got: &'a RgbImage,
-    expected: &'a RgbImage,
+    got: &'a Pixels,
+    expected: &'a Pixels,
     colour: usize,
 }
 
@@ -97,7 +92,7 @@ impl Windows<'_> {
     fn differences(self) -> impl Iterator<Item = Vec<f64>> {
         let weights = weights();
         let mut kept: VecDeque<Moments> = VecDeque::with_capacity(SIDE);
-        (0..self.got.height()).filter_map(move |row| {
+        (0..self.got.size.1).filter_map(move |row| {
             if kept.len() == SIDE {
                 kept.pop_front();
             }
@@ -107,9 +102,8 @@ impl Windows<'_> {
     }
 
     fn moments(&self, row: u32, weights: &[f64; SIDE]) -> Moments {
-        let values = |picture: &RgbImage| -> Vec<f64> {
-            let pixels = (0..picture.width()).map(|column| picture[(column, row)].0[self.colour]);
-            pixels.map(f64::from).collect()
+        let values = |picture: &Pixels| -> Vec<f64> {
+            picture.row(row).iter().map(|pixel| f64::from(pixel[self.colour])).collect()
         };
         let (got, expected) = (values(self.got), values(self.expected));
         let product =
@@ -155,10 +149,7 @@ mod tests {
     use super::*;
 
     fn picture(draw: impl Fn(u32, u32) -> [u8; 3]) -> Picture {
-        let mut file = Cursor::new(Vec::new());
-        let pixels = RgbImage::from_fn(60, 40, |x, y| Rgb(draw(x, y)));
-        pixels.write_to(&mut file, ImageFormat::Png).unwrap();
-        Picture::decode(&file.into_inner()).unwrap()
+        Picture::decode(&Pixels::draw((60, 40), draw).to_png().unwrap()).unwrap()
     }
 
     fn scene(x: u32, y: u32) -> [u8; 3] {
@@ -191,9 +182,9 @@ mod tests {
         assert!(x.abs_diff(40) <= 5 && y.abs_diff(20) <= 5, "{x}, {y}");
         assert!(difference.size > 0.01 && difference.size < 0.2, "{}", difference.size);
         let drawn = Picture::decode(&difference.picture(&expected).unwrap()).unwrap();
-        let [red, green, _] = drawn.pixels[(x, y)].0;
+        let [red, green, _] = drawn.pixels.at(x, y);
         assert!(red > green + 50, "{red} {green}");
-        let [red, green, blue] = drawn.pixels[(5, 5)].0;
+        let [red, green, blue] = drawn.pixels.at(5, 5);
         assert!(red.abs_diff(green) <= 1 && green == blue);
     }
 

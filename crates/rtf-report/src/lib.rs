@@ -30,6 +30,7 @@ mod growth;
 pub mod journal;
 pub mod junit;
 mod known_failure;
+pub mod local_time;
 pub mod logs;
 pub mod markdown;
 pub mod merge;

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use jiff::Zoned;
 use jiff::civil::Date;
 
 use super::RunnerEnvironment;
@@ -86,9 +85,10 @@ pub struct Options {
 }
 
 impl Options {
-    /// Creates options without parameters and with one repetition.
+    /// Creates options without parameters and with one repetition, for a run that starts on
+    /// this local day.
     #[must_use]
-    pub fn new(runner: RunnerEnvironment) -> Self {
+    pub fn new(runner: RunnerEnvironment, today: Date) -> Self {
         Self {
             recursive: false,
             param: String::new(),
@@ -98,7 +98,7 @@ impl Options {
             runner,
             config_request: ConfigRequest::default(),
             case_listing: CaseListing::default(),
-            today: Zoned::now().date(),
+            today,
         }
     }
 

@@ -6,6 +6,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use jiff::civil::date;
 use rtf_plan::plan::{self, InputPath, Options, Plan, PlanDraft, PlanOutcome, RunnerEnvironment};
 
 pub struct Bench {
@@ -28,7 +29,7 @@ impl Bench {
             executable: root.join("bin/rtf"),
             variables: variables.into_iter().collect(),
         };
-        let options = Options::new(runner);
+        let options = Options::new(runner, date(2026, 7, 1));
         let bench = Self { _dir: dir, root, options };
         let hosts = ["native", "lua", "framework", "signals", "faults"];
         let hosts = hosts.map(|host| format!("rtf-host-{host}"));

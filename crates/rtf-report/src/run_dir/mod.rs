@@ -12,6 +12,8 @@ use std::time::Duration;
 use jiff::Zoned;
 use jiff::tz::TimeZone;
 
+use crate::local_time;
+
 pub use resolve::{ResolveError, resolve};
 
 /// The journal's name in the directory of a run.
@@ -93,7 +95,7 @@ pub fn create(results: &Path) -> Result<RunDir, RunDirError> {
     fs::create_dir_all(results).map_err(failed(results))?;
     let mut tried = 0;
     let (now, name, path) = loop {
-        let now = Zoned::now();
+        let now = local_time::now();
         let name = name(&now);
         let path = results.join(&name);
         match fs::create_dir(&path) {

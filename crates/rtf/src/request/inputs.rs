@@ -12,6 +12,7 @@ use rtf_plan::config::ConfigRequest;
 use rtf_plan::plan::{InputPath, Options, RunnerEnvironment};
 use rtf_plan::select::{Shard, TestOrder};
 use rtf_plan::suite::episode_reference;
+use rtf_report::local_time;
 
 use super::past_tests::PastQuery;
 use super::{failed_cases, past_run};
@@ -258,6 +259,6 @@ fn options(manifest: &Manifest, runner: RunnerEnvironment) -> Options {
         environment: manifest.environment.clone().unwrap_or_default(),
         repetitions: manifest.repetition.unwrap_or(1),
         config_request: ConfigRequest { profile: manifest.profile.clone(), params },
-        ..Options::new(runner)
+        ..Options::new(runner, local_time::now().date())
     }
 }

@@ -19,7 +19,7 @@ use rtf_plan::plan::{Compatibility, Options, RunnerEnvironment};
 use rtf_process::fork_server::ForkMode;
 use rtf_report::predecessor::{self, ResultList, ResultListOptions};
 use rtf_report::run_dir::JOURNAL;
-use rtf_report::{ReportError, ReportFile};
+use rtf_report::{ReportError, ReportFile, local_time};
 
 use crate::cli::{ReportFormat, WebAccessArgs};
 use crate::command::VerbResult;
@@ -123,7 +123,7 @@ fn request(args: &Args, results: &Path) -> Result<RunRequest, Failure> {
         param: args.param.clone(),
         environment: args.environment.clone(),
         repetitions: args.repetition.max(1),
-        ..Options::new(runner)
+        ..Options::new(runner, local_time::now().date())
     };
     let address = SocketAddr::from((Ipv4Addr::LOCALHOST, args.web_port));
     let revision = RevisionQuery::start(&options.runner.current_dir);

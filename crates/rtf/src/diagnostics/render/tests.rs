@@ -30,7 +30,7 @@ impl Bench {
             executable: root.join("bin/rtf"),
             variables: variables.into_iter().collect(),
         };
-        let options = Options::new(surroundings);
+        let options = Options::new(surroundings, jiff::civil::date(2026, 7, 1));
         let bench = Self { dir, options };
         bench.write("ArmTest.lua", "").write("SensorTest.so", "")
     }
