@@ -51,23 +51,25 @@ pub struct Written<'a> {
     pub end: ExitStatus,
 }
 
-/// Reads what a process wrote and sends the notifications to `session`. The process ran the one
-/// case `case`. `scratch` is an empty directory. Returns whether the report is as the framework
+/// Reads what a process wrote and sends the notifications to `session`. The process ran these
+/// cases, at least one; of types with a process for each case, the first. `scratch` is an empty directory. Returns whether the report is as the framework
 /// writes it; `None` without such a type.
 pub fn read_report(
     framework: &str,
-    case: &str,
+    cases: &[&str],
     written: &Written<'_>,
     session: &Session,
     scratch: &Path,
 ) -> Option<bool> {
     let (_, adapter) = super::by_name(framework)?;
-    let listed = [ListedCase { name: case.to_owned(), ..ListedCase::default() }];
+    let listed = |name: &&str| ListedCase { name: (*name).to_owned(), ..ListedCase::default() };
+    let listed: Vec<ListedCase> = cases.iter().map(listed).collect();
+    let first = listed.first()?;
     let test = TestProgram { file: PathBuf::from("/tests/program"), args: Vec::new() };
     let cases = Selection { cases: &listed, is_all: false };
     let launch = Launch { test: &test, cases, channel: OpenChannel::None, scratch };
     let mut reader = match framework {
-        "ctest" => ctest::reader_of_first(written.document, case),
+        "ctest" => ctest::reader_of_first(written.document, &first.name),
         _ => {
             place(framework, scratch, written.document)?;
             adapter.reader(&launch)
@@ -77,7 +79,7 @@ pub fn read_report(
     reporter.begin_process(&cases);
     if adapter.needs_separate_processes() {
         // The supervisor starts the case.
-        reporter.start(listed[0].start());
+        reporter.start(first.start());
     }
     let is_good = feed(&mut *reader, written, &mut reporter);
     reporter.end_open(&CaseResult::new(Outcome::Crashed, "it crashed"));

@@ -35,6 +35,9 @@ use crate::{
     TestId, Verdict,
 };
 
+/// The most tests for which memory is reserved when a run starts.
+const RESERVED_TESTS: usize = 1 << 17;
+
 /// The state of a run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum RunState {
@@ -124,7 +127,11 @@ impl Record {
         self.events += 1;
         let at = event.at;
         match &event.kind {
-            EventKind::RunStarted(run) => self.run = Some(run.clone()),
+            EventKind::RunStarted(run) => {
+                // Not more because of a damaged number.
+                self.tests.reserve_exact((run.tests as usize).min(RESERVED_TESTS));
+                self.run = Some(run.clone());
+            }
             EventKind::Warning { diagnostic } => self.warnings.push(diagnostic.clone()),
             EventKind::RunFinished { interrupted } => {
                 self.state = RunState::Finished { interrupted: interrupted.clone() };

@@ -75,14 +75,14 @@ impl<'a> Context<'a> {
     /// Stores the parameters of an episode, also with the guard.
     pub fn begin_episode(&mut self, episode: Episode) {
         self.values.begin_episode(episode);
-        self.push(Effect::KeepValues(self.values.clone()));
+        self.push(Effect::KeepValues(Box::new(self.values.clone())));
     }
 
     /// Stores a value of a fixture, also with the guard.
     pub fn provide(&mut self, plan: &FixturePlan, index: usize, (name, value): (String, Value)) {
         let secret = plan.is_secret(&name);
         self.values.set(index, (&plan.name, &name), value.clone(), secret);
-        self.push(Effect::KeepValues(self.values.clone()));
+        self.push(Effect::KeepValues(Box::new(self.values.clone())));
         let value = (!secret).then_some(value);
         let fixture = plan.id;
         self.emit(EventKind::FixtureProvided(FixtureProvided { fixture, name, value, secret }));

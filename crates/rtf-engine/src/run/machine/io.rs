@@ -179,7 +179,7 @@ pub enum Effect {
     /// They are resumed.
     ResumeLimits(TestId),
     /// Keep these values of fixtures for hooks that the guard runs.
-    KeepValues(FixtureValues),
+    KeepValues(Box<FixtureValues>),
     /// Report an event.
     Emit(EventKind),
     /// The suite has finished. The last effect.

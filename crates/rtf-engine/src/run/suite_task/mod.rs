@@ -224,7 +224,7 @@ impl SuiteTask<'_> {
 
     fn carry_out(&mut self, effect: Effect) {
         match effect {
-            Effect::KeepValues(values) => self.context.guard.fixture_values(self.plan, values),
+            Effect::KeepValues(values) => self.context.guard.fixture_values(self.plan, *values),
             Effect::Emit(kind) => {
                 self.notify_guard(&kind);
                 self.events.emit(kind);

@@ -47,8 +47,9 @@ pub(super) struct Reader {
     output: String,
     /// What arrives for `output`.
     pieces: Utf8Pieces,
-    /// Tests whose mark was seen, and whether they were skipped.
-    marks: HashMap<String, bool>,
+    /// Tests whose marks were seen, and whether they were skipped. Each end of a test takes its
+    /// first one, so that the result does not depend on which channel is read first.
+    marks: HashMap<String, VecDeque<bool>>,
     /// Tests that were reported as skipped.
     skipped: HashSet<String>,
 }
@@ -101,7 +102,7 @@ impl Reader {
         while let Some(event) = self.queue.pop_front() {
             if let Event::TestEnd { passed: false } = event
                 && !is_last
-                && self.running.as_ref().is_some_and(|run| !self.marks.contains_key(&run.name))
+                && self.running.as_ref().is_some_and(|run| !self.has_mark(&run.name))
             {
                 self.queue.push_front(event);
                 return;
@@ -129,9 +130,15 @@ impl Reader {
         }
     }
 
+    fn has_mark(&self, test: &str) -> bool {
+        self.marks.get(test).is_some_and(|marks| !marks.is_empty())
+    }
+
     fn end_test(&mut self, passed: bool, cases: &mut CaseReporter<'_>) {
         let Some(Running { name, parts }) = self.running.take() else { return };
-        if self.marks.remove(&name) == Some(true) {
+        // A skipped test has not passed; one that has may have printed the mark itself.
+        let marks = self.marks.get_mut(&name).filter(|_| !passed);
+        if marks.and_then(VecDeque::pop_front) == Some(true) {
             let reasons: Vec<&str> = parts.iter().map(|part| part.text.trim()).collect();
             let reason = reasons.join("\n");
             let reason = if reason.is_empty() { "skipped" } else { reason.trim() };
@@ -160,7 +167,8 @@ impl Reader {
     fn mark_skipped(&mut self, report: &Report) {
         for suite in &report.testsuites {
             for test in &suite.testsuite {
-                self.marks.insert(format!("{}.{}", suite.name, test.name), test.was_skipped());
+                let name = format!("{}.{}", suite.name, test.name);
+                self.marks.insert(name, [test.was_skipped()].into());
             }
         }
     }
@@ -201,7 +209,7 @@ impl ReportReader for Reader {
     }
 
     fn output(&mut self, stream: OutputStream, bytes: &[u8], cases: &mut CaseReporter<'_>) {
-        if stream == OutputStream::Stdout {
+        if stream == OutputStream::Stdout && !self.report_decides {
             self.pieces.append(bytes, &mut self.output);
             self.find_marks();
             self.advance(false, cases);
@@ -241,7 +249,7 @@ impl Reader {
                 return;
             };
             let name = text[..end].to_owned();
-            self.marks.insert(name, is_skip);
+            self.marks.entry(name).or_default().push_back(is_skip);
             rest = &text[end..];
         }
         // A mark may be cut.
