@@ -23,7 +23,7 @@ from lines import all_groups
 from measuring import table
 from measuring.bench import TOP, Bench
 from measuring.build import build
-from measuring.judge import Judgement, judge
+from measuring.judge import NOT_MEASURED, Judgement, judge
 from measuring.model import Group, MeasuringError
 from measuring.others import Others
 from measuring.rounds import measure
@@ -52,6 +52,8 @@ def main() -> int:
         table.write_page(options.page, judgements, groups)
     failed = sum(judgement.fails for judgement in judgements)
     print(f"{failed} of {len(judgements)} lines failed" if failed else "no line failed")
+    if any(judgement.verdict == NOT_MEASURED for judgement in judgements):
+        return 2
     return 1 if failed else 0
 
 
@@ -100,10 +102,16 @@ def measure_all(bench: Bench, only: re.Pattern[str], rounds: int | None) -> Iter
     for group in all_groups(bench):
         lines = [line for line in group.lines if only.search(f"{group.name}: {line.what}")]
         if lines:
-            with Progress(group) as report:
-                others = Others()
-                found = measure(group, lines, rounds or group.rounds, report)
-                share = others.share()
+            try:
+                with Progress(group) as report:
+                    others = Others()
+                    found = measure(group, lines, rounds or group.rounds, report)
+                    share = others.share()
+            except MeasuringError as problem:
+                # The other groups have taken minutes.
+                print(f"error: {group.name}: {problem}", file=sys.stderr, flush=True)
+                yield from (Judgement(group.name, line, NOT_MEASURED) for line in lines)
+                continue
             yield from (replace(judge(group, line, found), foreign_share=share) for line in lines)
 
 

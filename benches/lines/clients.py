@@ -17,6 +17,7 @@ from measuring.model import Group, Limit, Line, MeasuringError, Samples, Work
 from lines import page
 
 CLIENTS = 200
+ADDRESSES = 10
 TESTS = 100
 IDLE_SECS = 5
 END_SECS = 60
@@ -48,8 +49,8 @@ def followed(bench: Bench, file: Path, gate: Path) -> Samples:
     with page.started(bench, "run", str(file)) as (process, url), ExitStack() as connections:
         address = urlsplit(url)
         clients = [
-            connections.enter_context(connect(address.hostname or "", address.port or 0))
-            for _ in range(CLIENTS)
+            connections.enter_context(connect(number, address.hostname or "", address.port or 0))
+            for number in range(CLIENTS)
         ]
         runner = child_of(process.pid)
         time.sleep(1)
@@ -63,9 +64,10 @@ def followed(bench: Bench, file: Path, gate: Path) -> Samples:
     return {MEMORY: [memory], IDLE: [idle / IDLE_SECS * 100]}
 
 
-def connect(host: str, port: int) -> socket.socket:
-    """Requests the stream."""
-    connection = socket.create_connection((host, port))
+def connect(number: int, host: str, port: int) -> socket.socket:
+    """Requests the stream. No address may have all connections, so there are several."""
+    own = f"127.0.0.{1 + number % ADDRESSES}"
+    connection = socket.create_connection((host, port), source_address=(own, 0))
     request = f"GET {EVENTS} HTTP/1.1\r\nHost: {host}:{port}\r\n\r\n"
     connection.sendall(request.encode("ascii"))
     return connection
