@@ -136,16 +136,35 @@ impl Record {
             EventKind::RunFinished { interrupted } => {
                 self.state = RunState::Finished { interrupted: interrupted.clone() };
             }
-            EventKind::SuitePlanned(plan) => {
-                if missing_plans::fill(&mut self.suites, plan.suite.index(), missing_plans::suite) {
-                    self.suites.push(SuiteRecord::new(plan.clone()));
-                }
-            }
             EventKind::SuiteStarted { suite } => self.suite(*suite, |s| s.started = Some(at)),
             EventKind::SuitePrepared(prepared) => {
                 self.suite(prepared.suite, |s| s.prepared = Some(prepared.clone()));
             }
             EventKind::SuiteFinished { suite } => self.suite(*suite, |s| s.finished = Some(at)),
+            EventKind::RunnerDied { reason, leaked } => {
+                self.state = RunState::Died { reason: reason.clone() };
+                self.leaked.extend_from_slice(leaked);
+            }
+            EventKind::ResourcesMeasured { source: Source::Test(test), usage, tests_served } => {
+                if let Some(suite) = self.suite_of(Source::Test(*test)) {
+                    self.suite(suite, |s| {
+                        host::record_usage(&mut s.hosts, *test, *tests_served, *usage)
+                    });
+                }
+            }
+            kind if self.apply_plan(kind) || self.apply_to_episode(at, kind) => {}
+            kind => self.apply_to_source(at, kind),
+        }
+    }
+
+    /// Adds what will be run; false for other events.
+    fn apply_plan(&mut self, kind: &EventKind) -> bool {
+        match kind {
+            EventKind::SuitePlanned(plan) => {
+                if missing_plans::fill(&mut self.suites, plan.suite.index(), missing_plans::suite) {
+                    self.suites.push(SuiteRecord::new(plan.clone()));
+                }
+            }
             EventKind::FixturePlanned(plan) => {
                 let missing = |index| missing_plans::fixture(index, plan.suite);
                 let known = self.fixtures.len() as u32;
@@ -154,10 +173,6 @@ impl Record {
                     self.suite(plan.suite, |s| s.fixtures.extend(ids));
                     self.fixtures.push(FixtureRecord::new(plan.clone()));
                 }
-            }
-            EventKind::RunnerDied { reason, leaked } => {
-                self.state = RunState::Died { reason: reason.clone() };
-                self.leaked.extend_from_slice(leaked);
             }
             EventKind::HookPlanned(plan) => {
                 let missing = |index| missing_plans::hook(index, plan.suite);
@@ -177,16 +192,9 @@ impl Record {
                     self.tests.push(TestRecord::new(plan.clone()));
                 }
             }
-            EventKind::ResourcesMeasured { source: Source::Test(test), usage, tests_served } => {
-                if let Some(suite) = self.suite_of(Source::Test(*test)) {
-                    self.suite(suite, |s| {
-                        host::record_usage(&mut s.hosts, *test, *tests_served, *usage)
-                    });
-                }
-            }
-            kind if self.apply_to_episode(at, kind) => {}
-            kind => self.apply_to_source(at, kind),
+            _ => return false,
         }
+        true
     }
 
     /// Records damage of the journal that this is read from.
