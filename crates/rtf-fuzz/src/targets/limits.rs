@@ -1,6 +1,6 @@
-//! Files of limits, and stored trajectories.
+//! Files of limits, stored trajectories and pictures.
 
-use rtf_golden::{Reference, by_time, by_warp};
+use rtf_golden::{Picture, PictureDifference, Reference, by_time, by_warp};
 use rtf_plan::envelope::check_text;
 
 use super::labels;
@@ -27,4 +27,13 @@ pub fn check_trajectory(data: &[u8]) {
     if trajectory.points().len() < 100 {
         assert!(by_warp(trajectory, trajectory, 0.0).is_some());
     }
+}
+
+/// A file of a picture: one that is accepted equals itself.
+pub fn check_picture(data: &[u8]) {
+    let Ok(picture) = Picture::decode(data) else { return };
+    let difference = PictureDifference::of(&picture, &picture).expect("one size");
+    assert_eq!(difference.size, 0.0);
+    let drawn = difference.picture(&picture).expect("a picture");
+    assert!(Picture::decode(&drawn).is_ok());
 }

@@ -9,6 +9,7 @@ mod history;
 mod journal;
 mod labels;
 mod limits;
+mod monitor;
 mod protocol;
 mod suite;
 mod web;
@@ -43,6 +44,8 @@ pub const TARGETS: &[Target] = &[
     Target { name: "journal", check: journal::check, more: &["crates/rtf-report/tests/streams"] },
     Target { name: "journal-torn", check: journal::check_torn, more: &[] },
     Target { name: "limits", check: limits::check, more: &["examples/11-signals/arm.limits.yaml"] },
+    Target { name: "monitor", check: monitor::check, more: &[] },
+    Target { name: "picture", check: limits::check_picture, more: &[] },
     Target { name: "runner-line", check: protocol::check_host_message, more: &[] },
     Target { name: "suite", check: suite::check, more: &["crates/rtf-plan/tests/data"] },
     Target { name: "trajectory", check: limits::check_trajectory, more: &[] },
