@@ -9,7 +9,8 @@ pub(crate) type Line = [f64; 2];
 /// A crossing closer to an end, relative to the length of the line, is the end.
 const RESOLUTION: f64 = 1e-12;
 
-/// How often a line may be divided; more would be rounding.
+/// How often a line, and a part of it again, may be divided; more would be rounding. A quotient of two
+/// signals is not linear, so that its absolute value may have a kink in each part.
 const MAX_DIVISIONS: usize = 64;
 
 /// An expression of leaves: signals, either linear or held.
@@ -113,12 +114,19 @@ impl Expression {
         let line = self.line(leaves, duration, &mut split);
         match split {
             None => parts.push((1.0, line)),
-            Some(_) => self.divide(leaves, duration, (0.0, 1.0), parts),
+            Some(_) => self.divide(leaves, duration, (0.0, 1.0), 0, parts),
         }
     }
 
-    /// The parts between two fractions of the time.
-    fn divide(&self, leaves: &[Line], duration: f64, range: (f64, f64), parts: &mut Vec<Part>) {
+    /// The parts between two fractions of the time, which are a part of a part, `depth` times.
+    fn divide(
+        &self,
+        leaves: &[Line],
+        duration: f64,
+        range: (f64, f64),
+        depth: usize,
+        parts: &mut Vec<Part>,
+    ) {
         let (from, to) = range;
         let part: Vec<Line> = leaves
             .iter()
@@ -132,9 +140,11 @@ impl Expression {
         let mut split = None;
         let line = self.line(&part, duration * (to - from), &mut split);
         match split.map(|split| from + (to - from) * split) {
-            Some(middle) if middle > from && middle < to && parts.len() < MAX_DIVISIONS => {
-                self.divide(leaves, duration, (from, middle), parts);
-                self.divide(leaves, duration, (middle, to), parts);
+            Some(middle)
+                if middle > from && middle < to && parts.len().max(depth) < MAX_DIVISIONS =>
+            {
+                self.divide(leaves, duration, (from, middle), depth + 1, parts);
+                self.divide(leaves, duration, (middle, to), depth + 1, parts);
             }
             _ => parts.push((to, line)),
         }
