@@ -20,6 +20,9 @@ const FULL: usize = 4 * 1024 * 1024;
 /// written together.
 const GATHERING: Duration = Duration::from_micros(250);
 
+/// A longer text is written even if its line is not complete.
+const LINE_LIMIT: usize = 64 * 1024;
+
 /// A data stream omits nothing: writing blocks above this number of pending bytes.
 const STREAM_LIMIT: usize = 4 * 1024 * 1024;
 
@@ -44,7 +47,12 @@ struct SharedBuffer {
 #[derive(Debug, Default)]
 struct WriterState {
     text: Vec<u8>,
+    /// The length of the complete lines at the beginning of `text`. The rest of the text waits for its
+    /// end, because a bar or a prompt must not be drawn in a line.
+    complete: usize,
     bar: Option<BarState>,
+    /// How many wait in [`Write::flush`].
+    flushing: usize,
     /// The thread has taken something and is not done with it.
     is_writing: bool,
     /// Output is discarded: its reader has disconnected, or an error occurred.
@@ -62,6 +70,27 @@ impl Drop for Handle {
     fn drop(&mut self) {
         self.0.lock().is_closed = true;
         self.0.changed.notify_all();
+    }
+}
+
+impl WriterState {
+    fn push(&mut self, bytes: &[u8]) {
+        if let Some(end) = bytes.iter().rposition(|byte| *byte == b'\n') {
+            self.complete = self.text.len() + end + 1;
+        }
+        self.text.extend_from_slice(bytes);
+    }
+
+    /// The length of the text that can be written now.
+    fn writable(&self) -> usize {
+        let is_all = self.flushing > 0 || self.is_closed || self.text.len() > LINE_LIMIT;
+        if is_all { self.text.len() } else { self.complete }
+    }
+
+    fn take_text(&mut self) -> Vec<u8> {
+        let rest = self.text.split_off(self.writable());
+        self.complete = 0;
+        std::mem::replace(&mut self.text, rest)
     }
 }
 
@@ -125,20 +154,21 @@ impl Write for BackgroundWriter {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let waiting = &self.shared.waiting;
         let is_full = |state: &WriterState| {
-            !state.is_over
-                && waiting.load(Ordering::Relaxed).saturating_add(bytes.len()) > self.limit
+            let waiting = waiting.load(Ordering::Relaxed);
+            !state.is_over && waiting > 0 && waiting.saturating_add(bytes.len()) > self.limit
         };
         let mut state = self.shared.wait_while(is_full);
         if let Some(error) = state.error.take() {
             return Err(error);
         }
         if !state.is_over {
-            // Waking the thread is a system call; with text, it is awake already.
-            let is_idle = state.text.is_empty();
-            state.text.extend_from_slice(bytes);
+            // Waking the thread is a system call; with text to write, it is awake already.
+            let is_idle = state.writable() == 0;
+            state.push(bytes);
             waiting.fetch_add(bytes.len(), Ordering::Relaxed);
+            let wakes = is_idle && state.writable() > 0;
             drop(state);
-            if is_idle {
+            if wakes {
                 self.shared.changed.notify_all();
             }
         }
@@ -149,7 +179,11 @@ impl Write for BackgroundWriter {
         let is_busy = |state: &WriterState| {
             !state.is_over && (state.is_writing || !state.text.is_empty() || state.bar.is_some())
         };
-        match self.shared.wait_while(is_busy).error.take() {
+        self.shared.lock().flushing += 1;
+        self.shared.changed.notify_all();
+        let mut state = self.shared.wait_while(is_busy);
+        state.flushing -= 1;
+        match state.error.take() {
             Some(error) => Err(error),
             None => Ok(()),
         }
@@ -162,22 +196,16 @@ fn write_all(shared: &SharedBuffer, mut out: Box<dyn Write + Send>) {
     let mut written_at: Option<Instant> = None;
     loop {
         let is_idle =
-            |state: &WriterState| state.text.is_empty() && state.bar.is_none() && !state.is_closed;
+            |state: &WriterState| state.writable() == 0 && state.bar.is_none() && !state.is_closed;
         drop(shared.wait_while(is_idle));
         if let Some(rest) = written_at.and_then(|at| GATHERING.checked_sub(at.elapsed())) {
             thread::sleep(rest);
         }
         let mut state = shared.lock();
-        if !state.text.is_empty() && !state.text.ends_with(b"\n") {
-            // The rest of the line follows: a bar must not be drawn in it.
-            drop(state);
-            thread::sleep(GATHERING);
-            state = shared.lock();
-        }
-        if state.is_over || (state.text.is_empty() && state.bar.is_none()) {
+        let (text, shown) = (state.take_text(), state.bar.take());
+        if state.is_over || (text.is_empty() && shown.is_none()) {
             return;
         }
-        let (text, shown) = (std::mem::take(&mut state.text), state.bar.take());
         state.is_writing = true;
         drop(state);
         let written = match text.is_empty() {

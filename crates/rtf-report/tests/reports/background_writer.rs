@@ -2,6 +2,8 @@
 
 use std::io::{self, Write};
 use std::sync::mpsc::{self, Receiver};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use crate::support::*;
 use rtf_model::{EventKind, Record};
@@ -73,7 +75,7 @@ fn a_reader_that_is_given_up_is_not_waited_for() {
     let mut outlet =
         BackgroundWriter::new(Box::new(Blocked { open: blocked, paper: paper.clone() })).unwrap();
     outlet.write_all(b"never read").unwrap();
-    let waiting = std::thread::spawn({
+    let waiting = thread::spawn({
         let mut outlet = outlet.clone();
         move || outlet.flush()
     });
@@ -91,11 +93,34 @@ fn a_stream_is_written_whole() {
     let outlet =
         BackgroundWriter::new(Box::new(Blocked { open: blocked, paper: paper.clone() })).unwrap();
     let mut stream = outlet.for_stream();
-    let writer = std::thread::spawn(move || {
+    let writer = thread::spawn(move || {
         (0..1000).for_each(|_| stream.write_all(&[b'x'; 16 * 1024]).unwrap());
         stream.flush().unwrap();
     });
     drop(open);
     writer.join().unwrap();
     assert_eq!(paper.text().len(), 1000 * 16 * 1024);
+}
+
+/// Nothing else may be drawn in a line.
+#[test]
+fn a_line_is_written_when_it_is_complete() {
+    let paper = Paper::default();
+    let mut outlet = BackgroundWriter::new(Box::new(paper.clone())).unwrap();
+    outlet.write_all(b"one\ntwo").unwrap();
+    let deadline = Instant::now() + Duration::from_secs(30);
+    while paper.text() != "one\n" && Instant::now() < deadline {
+        thread::sleep(Duration::from_millis(1));
+    }
+    thread::sleep(Duration::from_millis(20));
+    assert_eq!(paper.text(), "one\n");
+    outlet.write_all(b" and a half\nthree").unwrap();
+    outlet.flush().unwrap();
+    assert_eq!(paper.text(), "one\ntwo and a half\nthree");
+    // A line without an end does not fill the memory.
+    outlet.write_all(&[b'x'; 100 * 1024]).unwrap();
+    while paper.text().len() < 100 * 1024 && Instant::now() < deadline {
+        thread::sleep(Duration::from_millis(1));
+    }
+    assert!(paper.text().ends_with("xxx"));
 }
