@@ -34,6 +34,15 @@ pub(crate) struct Leaf {
     pub is_held: bool,
 }
 
+/// A stretch of a line, as fractions of the whole.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    from: f64,
+    to: f64,
+    /// How often the line was divided for it.
+    divisions: usize,
+}
+
 /// A part of a line: its end as a fraction of the whole, and the values at its ends.
 pub(crate) type Part = (f64, Line);
 
@@ -114,20 +123,16 @@ impl Expression {
         let line = self.line(leaves, duration, &mut split);
         match split {
             None => parts.push((1.0, line)),
-            Some(_) => self.divide(leaves, duration, (0.0, 1.0), 0, parts),
+            Some(_) => {
+                let whole = Stretch { from: 0.0, to: 1.0, divisions: 0 };
+                self.divide(leaves, duration, whole, parts);
+            }
         }
     }
 
-    /// The parts between two fractions of the time, which are a part of a part, `depth` times.
-    fn divide(
-        &self,
-        leaves: &[Line],
-        duration: f64,
-        range: (f64, f64),
-        depth: usize,
-        parts: &mut Vec<Part>,
-    ) {
-        let (from, to) = range;
+    /// The parts of a stretch of the line.
+    fn divide(&self, leaves: &[Line], duration: f64, stretch: Stretch, parts: &mut Vec<Part>) {
+        let Stretch { from, to, divisions } = stretch;
         let part: Vec<Line> = leaves
             .iter()
             .map(|[start, end]| {
@@ -141,10 +146,16 @@ impl Expression {
         let line = self.line(&part, duration * (to - from), &mut split);
         match split.map(|split| from + (to - from) * split) {
             Some(middle)
-                if middle > from && middle < to && parts.len().max(depth) < MAX_DIVISIONS =>
+                if middle > from && middle < to && parts.len().max(divisions) < MAX_DIVISIONS =>
             {
-                self.divide(leaves, duration, (from, middle), depth + 1, parts);
-                self.divide(leaves, duration, (middle, to), depth + 1, parts);
+                let divisions = divisions + 1;
+                let halves = [
+                    Stretch { to: middle, divisions, ..stretch },
+                    Stretch { from: middle, divisions, ..stretch },
+                ];
+                for half in halves {
+                    self.divide(leaves, duration, half, parts);
+                }
             }
             _ => parts.push((to, line)),
         }
