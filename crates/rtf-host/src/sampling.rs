@@ -40,6 +40,8 @@ pub(crate) struct Sampling {
     process: Pid,
     /// Start of the test's set-up: times count from then.
     began: Option<Instant>,
+    /// The time of the last sample without a time of its own.
+    last: Duration,
     /// One for each signal, in the order of their first samples.
     batches: Vec<Samples>,
     /// The time of the oldest sample.
@@ -54,6 +56,7 @@ impl Default for Sampling {
         Self {
             process: getpid(),
             began: None,
+            last: Duration::ZERO,
             batches: Vec::new(),
             oldest: None,
             is_due: false,
@@ -65,7 +68,7 @@ impl Default for Sampling {
 impl Sampling {
     /// Starts the time of a test: its set-up begins.
     pub(crate) fn begin(&mut self) {
-        (self.began, self.has_failed) = (Some(Instant::now()), false);
+        (self.began, self.last, self.has_failed) = (Some(Instant::now()), Duration::ZERO, false);
     }
 
     /// Adds a sample of a case, and returns whether it is within its limits.
@@ -75,7 +78,7 @@ impl Sampling {
         let oldest = *self.oldest.get_or_insert(now);
         let time = sample.time.filter(|time| time.is_finite());
         let point = (
-            time.unwrap_or_else(|| self.seconds(now)),
+            time.unwrap_or_else(|| self.next_time(now)),
             Some(sample.value).filter(|value| value.is_finite()),
         );
         // The last one with that name: other limits need another batch.
@@ -100,10 +103,12 @@ impl Sampling {
         is_within
     }
 
-    /// Seconds since the set-up began, to the microsecond.
-    fn seconds(&self, now: Instant) -> f64 {
+    /// Seconds since the set-up began, to the nanosecond. They increase with each sample, also if the
+    /// clock does not: monitors ignore a sample that is not later than the one before it.
+    fn next_time(&mut self, now: Instant) -> f64 {
         let elapsed = self.began.map_or(Duration::ZERO, |began| now - began);
-        elapsed.as_micros() as f64 / 1e6
+        self.last = elapsed.max(self.last + Duration::from_nanos(1));
+        self.last.as_nanos() as f64 / 1e9
     }
 
     /// Forgets samples of the parent process, which sends them itself.
@@ -165,5 +170,31 @@ impl Sample<'_> {
         self.value.is_finite()
             && self.low.is_none_or(|low| self.value >= low)
             && self.high.is_none_or(|high| self.value <= high)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_increase_with_each_sample() {
+        let mut sampling = Sampling::default();
+        sampling.begin();
+        let sample = Sample {
+            name: "q",
+            value: 1.0,
+            unit: "rad",
+            low: None,
+            high: None,
+            time: None,
+            place: None,
+        };
+        for _ in 0..200 {
+            assert!(sampling.add(&sample, None));
+        }
+        let times: Vec<f64> = sampling.batches[0].points.iter().map(|point| point.0).collect();
+        assert_eq!(times.len(), 200);
+        assert!(times.is_sorted_by(|earlier, later| earlier < later), "{times:?}");
     }
 }
