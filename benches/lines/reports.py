@@ -15,6 +15,9 @@ SAMPLE_RATE = "samples/s"
 CASE_RATE = "cases/s"
 MEMORY = "MB"
 
+# The import into the history has lines of its own.
+WITHOUT_HISTORY = ("--no-history",)
+
 RTF = "rtf"
 OLD = "predecessor"
 WITH_SAMPLES = "samples"
@@ -50,7 +53,7 @@ def rtf(bench: Bench) -> Callable[[], Samples]:
     file = suite.write(bench, "reports", [f'<test type="dll" param="{COUNT}">Reports</test>'])
 
     def work() -> Samples:
-        with suite.Run(bench, file) as run:
+        with suite.Run(bench, file, options=WITHOUT_HISTORY) as run:
             run.expect("message", COUNT)
             launched = run.launched
         return {RATE: [COUNT / launched.seconds], MEMORY: [launched.children[0].rss_mb]}
@@ -63,7 +66,7 @@ def samples(bench: Bench) -> Callable[[], Samples]:
     file = suite.write(bench, "samples", [f'<test type="dll" param="{COUNT}">Samples</test>'])
 
     def work() -> Samples:
-        with suite.Run(bench, file) as run:
+        with suite.Run(bench, file, options=WITHOUT_HISTORY) as run:
             batches = [event["samples"] for event in run.events() if "samples" in event]
             found = sum(len(batch["points"]) for batch in batches if isinstance(batch, dict))
             if found != COUNT:
@@ -78,7 +81,7 @@ def cases(bench: Bench) -> Callable[[], Samples]:
     file = suite.write(bench, "cases", [f'<test type="dll" param="{CASES}">Cases</test>'])
 
     def work() -> Samples:
-        with suite.Run(bench, file) as run:
+        with suite.Run(bench, file, options=WITHOUT_HISTORY) as run:
             run.expect("case-started", CASES)
             run.expect("case-finished", CASES, '"verdict":"passed"')
             return {CASE_RATE: [CASES / run.launched.seconds]}

@@ -11,7 +11,9 @@ FIXED = "ms a run"
 
 
 def by_count(seconds: Callable[[int], float], few: int, many: int) -> Samples:
-    """Measures a work with few and with many tests: the slope, and the rest of the shorter one."""
-    short, long = seconds(few), seconds(many)
+    """Measures a work with few and with many tests, which gives the slope, and with one test: its
+    time apart from that of a further one.
+    """
+    one, short, long = seconds(1), seconds(few), seconds(many)
     further = (long - short) / (many - few)
-    return {FURTHER: [further * 1e3], FIXED: [(short - further * few) * 1e3]}
+    return {FURTHER: [further * 1e3], FIXED: [(one - further) * 1e3]}
