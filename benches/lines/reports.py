@@ -15,7 +15,7 @@ SAMPLE_RATE = "samples/s"
 CASE_RATE = "cases/s"
 MEMORY = "MB"
 
-# The import into the history has lines of its own.
+# The import into the history has separate lines.
 WITHOUT_HISTORY = ("--no-history",)
 
 RTF = "rtf"

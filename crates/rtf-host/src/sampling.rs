@@ -40,7 +40,7 @@ pub(crate) struct Sampling {
     process: Pid,
     /// Start of the test's set-up: times count from then.
     began: Option<Instant>,
-    /// The time of the last sample without a time of its own.
+    /// The time of the last sample for which the test gave none.
     last: Duration,
     /// One for each signal, in the order of their first samples.
     batches: Vec<Samples>,
