@@ -52,8 +52,9 @@ pub struct Written<'a> {
 }
 
 /// Reads what a process wrote and sends the notifications to `session`. The process ran these
-/// cases, at least one; of types with a process for each case, the first. `scratch` is an empty directory. Returns whether the report is as the framework
-/// writes it; `None` without such a type.
+/// cases, at least one; if the type has a process for each case, the first one. `scratch` is an
+/// empty directory. Returns whether the report is as the framework writes it; `None` without such
+/// a type.
 pub fn read_report(
     framework: &str,
     cases: &[&str],

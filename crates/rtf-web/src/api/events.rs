@@ -18,7 +18,7 @@ use crate::feed::{Details, Feed};
 use crate::problem::Problem;
 
 /// How long nothing is sent at most.
-const SILENCE: Duration = Duration::from_secs(3);
+const SILENCE: Duration = Duration::from_secs(1);
 
 /// Which events.
 #[derive(Debug, Deserialize, IntoParams)]
