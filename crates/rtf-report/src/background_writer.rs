@@ -47,8 +47,8 @@ struct SharedBuffer {
 #[derive(Debug, Default)]
 struct WriterState {
     text: Vec<u8>,
-    /// The length of the complete lines at the beginning of `text`. The rest of the text waits for its
-    /// end, because a bar or a prompt must not be drawn in a line.
+    /// The length of the complete lines at the beginning of `text`. The rest waits for its end,
+    /// because a bar or a prompt must not be drawn in a line.
     complete: usize,
     bar: Option<BarState>,
     /// How many wait in [`Write::flush`].
