@@ -10,6 +10,9 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use anstream::adapter::StripBytes;
+use anstream::{AutoStream, ColorChoice};
+
 use crate::console::{Bar, BarState};
 use crate::is_disconnect;
 
@@ -125,6 +128,18 @@ impl BackgroundWriter {
         Self { limit: STREAM_LIMIT, ..self.clone() }
     }
 
+    /// The same writer for lines with colours, which are removed unless standard output shows
+    /// them. What is written at once stays together: no bar is drawn in it.
+    #[must_use]
+    pub(crate) fn for_colours(&self) -> Box<dyn Write + Send> {
+        match AutoStream::choice(&io::stdout()) {
+            ColorChoice::Never => {
+                Box::new(WithoutColours { out: self.clone(), stripper: StripBytes::new() })
+            }
+            _ => Box::new(self.clone()),
+        }
+    }
+
     /// Whether so much waits that detail should be left out.
     #[must_use]
     pub fn is_full(&self) -> bool {
@@ -187,6 +202,23 @@ impl Write for BackgroundWriter {
             Some(error) => Err(error),
             None => Ok(()),
         }
+    }
+}
+
+/// Removes colours.
+struct WithoutColours {
+    out: BackgroundWriter,
+    stripper: StripBytes,
+}
+
+impl Write for WithoutColours {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let plain = self.stripper.strip_next(bytes).collect::<Vec<_>>().concat();
+        self.out.write_all(&plain).map(|()| bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
     }
 }
 

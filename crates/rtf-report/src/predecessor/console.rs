@@ -49,10 +49,7 @@ impl ResultList {
     /// Writes through a background writer, for a run that must not wait.
     #[must_use]
     pub fn over(writer: &BackgroundWriter, options: ResultListOptions) -> Self {
-        let out: Box<dyn Write + Send> = Box::new(writer.clone());
-        let choice = anstream::AutoStream::choice(&std::io::stdout());
-        let out = Box::new(anstream::AutoStream::new(out, choice));
-        Self { background: Some(writer.clone()), ..Self::new(out, options) }
+        Self { background: Some(writer.clone()), ..Self::new(writer.for_colours(), options) }
     }
 
     /// Writes to `out`, with colour codes.

@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 use std::sync::mpsc::{self, Receiver};
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -123,4 +124,42 @@ fn a_line_is_written_when_it_is_complete() {
         thread::sleep(Duration::from_millis(1));
     }
     assert!(paper.text().ends_with("xxx"));
+}
+
+/// Keeps what is written at once.
+#[derive(Clone, Default)]
+struct Writes(Arc<Mutex<Vec<String>>>);
+
+impl Write for Writes {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.lock().unwrap().push(String::from_utf8(bytes.to_vec()).unwrap());
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// A progress bar is drawn between writes, and must not be drawn between a question and its
+/// choices.
+#[test]
+fn the_lines_of_an_event_are_written_together() {
+    let writes = Writes::default();
+    let mut outlet = BackgroundWriter::new(Box::new(writes.clone())).unwrap();
+    let mut console = Console::over(&outlet, options(Verbosity::Verbose));
+    let mut record = Record::default();
+    for event in &mut events("verdicts").0 {
+        if let EventKind::Message { message, .. } = &mut event.kind {
+            message.text = "one of many lines\n".repeat(1000);
+        }
+        record.apply(event);
+        console.event(event, &record).unwrap();
+        console.idle(&record).unwrap();
+        outlet.flush().unwrap();
+        let written = std::mem::take(&mut *writes.0.lock().unwrap());
+        assert!(written.len() <= 1, "{} writes for {event:?}", written.len());
+        let lines = written.concat().lines().count();
+        assert!(lines >= 1000 || !matches!(event.kind, EventKind::Message { .. }), "{lines}");
+    }
 }
