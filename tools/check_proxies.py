@@ -61,10 +61,12 @@ def main() -> int:
 def relayed(run: Run) -> None:
     """Without a fault, the proxy passes all messages on, as they are."""
     points = signals(run, "right")
-    received = {value for _, value in points["elbow"]}
+    # The first test waits for one of the signals; the reader may find the other one later.
+    received = [value for _, value in points["elbow"]]
     published = [value for _, value in points["right"]]
-    missing = [value for value in published[5:-5] if value not in received]
-    expect("messages that did not pass", missing, [])
+    compared = published[published.index(received[5]) : -5]
+    expect(f"{len(compared)} of {len(published)} messages", len(compared) > 30, True)
+    expect("messages that did not pass", [v for v in compared if v not in received], [])
 
 
 def shifted(run: Run) -> None:
