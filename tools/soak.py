@@ -36,8 +36,11 @@ INTERVAL = 0.5
 # A value grows if the test is this sure, and the growth over the whole time is beyond the noise.
 CONFIDENCE = 0.001
 NOISE = {"memory": 2.0, "descriptors": 3.0, "threads": 2.0, "zombies": 1.0, "files": 3.0}
-# The results of a run stay in memory until its reports are written.
-BYTES_A_TEST = 1024
+# Passed tests for each collapse, which delays the next test: a suite that always collapses is
+# restarted after 10 s.
+SHARED, OWN = 1800, 600
+# The results of a run stay in memory until its reports are written, and what the page lists.
+BYTES_A_TEST = 1536
 
 PASS = 'function TestCase.run() rtf.check(true, "it moves") end\n'
 FAIL = 'function TestCase.run() rtf.fail("it does not move") end\n'
@@ -53,8 +56,8 @@ SUITE = """<suite name="{name}" tolerate-collapse="true">
     <ready log="ready"/>
   </fixture>
   <hook on="failure collapse" name="park"><command>true</command></hook>
-  <test isolation="shared" repetition="180">pass.lua</test>
-  <test name="own" repetition="60">pass.lua</test>
+  <test isolation="shared" repetition="{shared}">pass.lua</test>
+  <test name="own" repetition="{own}">pass.lua</test>
   <test>fail.lua</test>
   <test>kill.lua</test>
 </suite>
@@ -83,7 +86,7 @@ def main() -> int:
     """Runs both parts and prints a table."""
     parser = argparse.ArgumentParser()
     parser.add_argument("rtf", type=Path)
-    parser.add_argument("--minutes", type=float, default=20)
+    parser.add_argument("--minutes", type=float, default=6)
     parser.add_argument("--runs", type=int, default=5000)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="rtf-soak-") as name:
@@ -104,7 +107,7 @@ class Bench:
         for name, text in {"pass": PASS, "fail": FAIL, "kill": KILL}.items():
             (directory / f"{name}.lua").write_text(text)
         for name in ("arm", "hand"):
-            (directory / f"{name}.xml").write_text(SUITE.format(name=name))
+            (directory / f"{name}.xml").write_text(SUITE.format(name=name, shared=SHARED, own=OWN))
         (directory / "short.xml").write_text(SHORT)
         self.environment = {**os.environ, "TMPDIR": str(self.temporary)}
 
@@ -153,7 +156,7 @@ def one_run(bench: Bench, minutes: float) -> list[str]:
     size = journal.stat().st_size / 1e6
     print(f"one run: {tests} tests, {dict(verdicts)}, journal {size:.0f} MB", flush=True)
     rounds = verdicts["failed"]
-    wanted = {"passed": 240 * rounds, "failed": rounds, "collapsed": rounds}
+    wanted = {"passed": (SHARED + OWN) * rounds, "failed": rounds, "collapsed": rounds}
     problems = [] if code == 1 else [f"exit code {code} of the run"]
     if verdicts != wanted:
         problems.append(f"the verdicts are {dict(verdicts)}, not {wanted}")

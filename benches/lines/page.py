@@ -1,4 +1,4 @@
-"""The page of a run with 10 000 tests and a million events, in Chromium."""
+"""The page of runs with 10 000 tests and a million events, and with 100 000 tests, in Chromium."""
 
 from __future__ import annotations
 
@@ -17,9 +17,11 @@ from measuring.model import Group, Limit, Line, MeasuringError, Samples, Work, h
 
 TESTS = 10_000
 EVENTS = 1_000_000
+MANY = 100_000
 TICKER = "ticker"
 END_SECS = 60
 
+OPENED = "ms from nothing to the list"
 PAINT = "ms to the list"
 LATE = "ms late"
 FRAME = "ms a frame"
@@ -27,26 +29,34 @@ MEMORY = "MB"
 
 LIVE = "page of a live run"
 SERVED = "page of a past run"
+LARGE = "page of 100 000 tests"
 
 
 def group(bench: Bench) -> Group:
-    """The page is opened after a million events, while the run continues."""
+    """The page is opened after a million events, while the run continues; then that of others."""
     reports = f'<test type="dll" param="{EVENTS}">Reports</test>'
     ticker = f'<test type="python" name="{TICKER}">Ticker</test>'
     rest = suite.tests("dll", "Trivial", TESTS - 2)
     file = suite.write(bench, "page", [reports, ticker, *rest])
     live = Work(LIVE, lambda: measure_live(bench, file), missing())
     served = Work(SERVED, lambda: measure_served(bench), missing())
+    critical = '<test name="critical" critical="true">Fails</test>'
+    many = suite.write(bench, "page-many", [critical, *suite.tests("dll", "Trivial", MANY - 1)])
+    large = Work(LARGE, lambda: measure_large(bench, many), missing())
     name = "10 000 tests, 1 M events"
-    smooth = Limit(50, required=False)
+    smooth, goal = Limit(50, required=False), Limit(1000, required=False)
     lines = (
         Line(f"{name}: the list is drawn", LIVE, PAINT, limit=Limit(1000)),
         Line(f"{name}: event to screen", LIVE, LATE, limit=Limit(200), statistic=high_percentile),
         Line(f"{name}: scrolling", LIVE, FRAME, limit=smooth, statistic=high_percentile),
         Line(f"{name}: rtf serve, the list is drawn again", SERVED, PAINT, limit=Limit(1000)),
         Line(f"{name}: memory of rtf serve", SERVED, MEMORY, limit=Limit(100)),
+        Line("100 000 tests: the page is opened", LARGE, OPENED, limit=goal),
+        Line("100 000 tests: the list is drawn again", LARGE, PAINT, limit=goal),
+        Line("100 000 tests: scrolling", LARGE, FRAME, limit=smooth, statistic=high_percentile),
+        Line("100 000 tests: memory of rtf serve", LARGE, MEMORY),
     )
-    return Group("page", (live, served), lines, rounds=3, warm_up=False)
+    return Group("page", (live, served, large), lines, rounds=3, warm_up=False)
 
 
 def missing() -> str:
@@ -64,12 +74,19 @@ def measure_live(bench: Bench, file: Path) -> Samples:
 
 
 def measure_served(bench: Bench) -> Samples:
-    """Opens the page of the run that `measure_live` created."""
+    """Opens the page of the newest run, which `measure_live` created."""
     with started(bench, "serve") as (process, url):
         name = (bench.results / "latest").resolve().name
         found = measure_page(f"{url.split('#')[0]}#/runs/{name}", "")
         memory = peak_mb(process.pid)
-    return {PAINT: found["paint"], MEMORY: [memory]}
+    names = {"opened": OPENED, "paint": PAINT, "frames": FRAME}
+    return {unit: found[name] for name, unit in names.items()} | {MEMORY: [memory]}
+
+
+def measure_large(bench: Bench, file: Path) -> Samples:
+    """Opens the page of a run whose first test fails, so that all others are skipped."""
+    with suite.Run(bench, file, codes=(1,)):
+        return measure_served(bench)
 
 
 @contextmanager

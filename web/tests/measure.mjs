@@ -4,8 +4,8 @@
 //                                 without a test, latencies are not measured
 //
 // Prints one line of JSON, in milliseconds: how long it takes until the list of
-// tests is drawn, how late ticks are on the screen, and the frames while the
-// list is scrolled.
+// tests is there when the page is opened, and drawn when it is opened again; how
+// late ticks are on the screen, and the frames while the list is scrolled.
 
 import { Guarded, launch } from './support/browser.mjs';
 
@@ -19,7 +19,9 @@ const browser = await launch();
 const guarded = await Guarded.open(browser, url);
 const { page } = guarded;
 await page.getByRole('treeitem').first().waitFor();
+const opened = await page.evaluate(() => performance.now());
 const results = {
+    opened,
     // First, because it waits for everything that precedes the ticks.
     lateness: test ? await lateness() : [],
     paint: await paint(),

@@ -23,8 +23,10 @@ use crate::runs::Run;
 const BEHIND: u64 = 8 << 20;
 /// Maximum size of a batch, in bytes of the journal.
 const BATCH: u64 = 256 * 1024;
-/// Polling interval for a journal of another process.
+/// Polling interval for a journal of another process …
 const LOOK: Duration = Duration::from_millis(100);
+/// … and for that of this process, whose growth is notified.
+const LOOK_NOTIFIED: Duration = Duration::from_secs(1);
 /// How long growth is collected.
 const COLLECT: Duration = Duration::from_millis(20);
 /// Minimum time between two batches. Each wakes the client, which may need
@@ -151,9 +153,10 @@ impl Feed {
         Ok(Some(Self { at: Some(at), grown: None, ending: None, ended: false, moved: None }))
     }
 
-    /// Subscribes to growth of the journal, and to the shutdown of the server.
-    pub fn listen(&mut self, grown: watch::Receiver<u64>, ending: watch::Receiver<bool>) {
-        (self.grown, self.ending) = (Some(grown), Some(ending));
+    /// Subscribes to growth of the journal, if this process writes it, and to the shutdown of the
+    /// server.
+    pub fn listen(&mut self, grown: Option<watch::Receiver<u64>>, ending: watch::Receiver<bool>) {
+        (self.grown, self.ending) = (grown, Some(ending));
     }
 
     /// The next events; `None` at the end of the stream.
@@ -190,6 +193,7 @@ impl Feed {
     }
 
     async fn wait(&mut self) {
+        let look = if self.grown.is_some() { LOOK_NOTIFIED } else { LOOK };
         let soon = Instant::now() + COLLECT;
         let due = self.moved.map_or(soon, |moved| soon.max(moved + BETWEEN));
         let grown = async {
@@ -208,7 +212,7 @@ impl Feed {
         tokio::select! {
             () = grown => {}
             () = ending => {}
-            () = tokio::time::sleep_until(due.max(Instant::now() + LOOK).into()) => {}
+            () = tokio::time::sleep_until(due.max(Instant::now() + look).into()) => {}
         }
     }
 }
@@ -226,6 +230,17 @@ impl FeedPosition {
         if let Some(reason) = self.anew.take() {
             batch.events.push(resync(self.next, reason));
         }
+        if self.offset < end {
+            self.read(end, &mut batch)?;
+        }
+        batch.is_last = self.offset >= end;
+        self.tell_progress(&mut batch);
+        self.end(state, &mut batch);
+        Ok(batch)
+    }
+
+    /// Reads the next events of a journal that was read until `end`.
+    fn read(&mut self, end: u64, batch: &mut Batch) -> Result<(), Problem> {
         let failed = crate::runs::unreadable;
         let stop = end.min(self.offset.saturating_add(BATCH));
         let journal = self.run.journal()?;
@@ -248,10 +263,7 @@ impl FeedPosition {
                 self.left_out = Some((header.seq, header.at));
             }
         }
-        batch.is_last = self.offset >= end;
-        self.tell_progress(&mut batch);
-        self.end(state, &mut batch);
-        Ok(batch)
+        Ok(())
     }
 
     fn tell_progress(&mut self, batch: &mut Batch) {

@@ -80,9 +80,15 @@ pub async fn events(
     let place = app.streams.clone().try_acquire_owned().map_err(|_| {
         Problem::new(StatusCode::SERVICE_UNAVAILABLE, "there are too many event streams")
     })?;
-    let feed = app.with_run(run, move |run| Feed::open(run.clone(), from, details)).await?;
-    let Some(mut feed) = feed else { return Ok(StatusCode::NO_CONTENT.into_response()) };
-    feed.listen(app.grown.clone(), app.ending.clone());
+    let runs = app.runs.clone();
+    let opened = app.with_run(run, move |run| {
+        let feed = Feed::open(run.clone(), from, details)?;
+        Ok(feed.map(|feed| (feed, runs.is_own(run))))
+    });
+    let Some((mut feed, is_own)) = opened.await? else {
+        return Ok(StatusCode::NO_CONTENT.into_response());
+    };
+    feed.listen(is_own.then(|| app.grown.clone()), app.ending.clone());
     let batches = stream::unfold(feed, |mut feed| async move {
         let batch = feed.next().await?;
         Some((batch, feed))

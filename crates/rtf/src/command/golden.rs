@@ -72,7 +72,7 @@ fn accept(mut args: GoldenAcceptArgs, matches: &ArgMatches) -> VerbResult {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What is stored: `2 trajectories and 1 picture`.
+/// What is stored: `2 trajectories and 1 picture`, `nothing`.
 fn count(stored: &[&Content]) -> String {
     let pictures = stored.iter().filter(|it| matches!(it, Content::Picture(_))).count();
     let trajectories = match stored.len() - pictures {
@@ -80,6 +80,7 @@ fn count(stored: &[&Content]) -> String {
         count => format_count(count as u64, "trajectorie"),
     };
     match (stored.len() - pictures, pictures) {
+        (0, 0) => "nothing".to_owned(),
         (_, 0) => trajectories,
         (0, pictures) => format_count(pictures as u64, "picture"),
         (_, pictures) => format!("{trajectories} and {}", format_count(pictures as u64, "picture")),

@@ -12,8 +12,9 @@ use super::submission::Submission;
 use crate::cli::RunArgs;
 use crate::command::{VerbResult, merge};
 use crate::error::Failure;
+use crate::history::RunImport;
 use crate::request::{self, OutputRequest, history_target};
-use crate::{exit, history, outputs, terminal};
+use crate::{exit, outputs, terminal};
 
 /// The last attempt of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,7 +103,7 @@ fn finish(args: &RunArgs, dir: &RunDir) -> Result<(), Failure> {
     let record = &stored.record;
     outputs::complete(&OutputRequest::resolve(args), &dir.journal(), record);
     if let Some(history) = history_target(args)? {
-        history::import_run(&history, record);
+        RunImport::start(&history).finish(record);
     }
     for collector in request::collectors(args)? {
         collector.push(record);

@@ -78,7 +78,7 @@ fn an_accepted_trajectory_is_the_reference_of_later_runs() {
     let again = folder.rtf(&["golden", "accept", "latest"]);
     assert_eq!(
         again.stdout,
-        "golden/reach.csv: `q` of arm/reach is within its tube\n0 trajectories accepted\n"
+        "golden/reach.csv: `q` of arm/reach is within its tube\nnothing accepted\n"
     );
     let after = std::fs::read_to_string(folder.path().join("golden/reach.csv")).unwrap();
     assert_eq!(after, text);

@@ -103,7 +103,7 @@ fn a_difference_is_a_failure_with_the_reference_and_the_difference() {
     assert_eq!(verdict, Some(Verdict::Passed));
     assert_eq!(
         stdout_of(&folder, &["golden", "accept", "latest"]),
-        "golden/start.png: `start` of sim/Look is within its tolerance\n0 trajectories accepted\n"
+        "golden/start.png: `start` of sim/Look is within its tolerance\nnothing accepted\n"
     );
     assert_eq!(std::fs::read(folder.path().join("golden/start.png")).unwrap(), MOVED);
     stdout_of(&folder, &["golden", "accept", "latest", "--all"]);
