@@ -41,6 +41,8 @@ NOISE = {"memory": 2.0, "descriptors": 3.0, "threads": 2.0, "zombies": 1.0, "fil
 SHARED, OWN = 1800, 600
 # The results of a run stay in memory until its reports are written, and what the page lists.
 BYTES_A_TEST = 1536
+# The page's server keeps a summary of each run.
+BYTES_A_RUN = 1024
 
 PASS = 'function TestCase.run() rtf.check(true, "it moves") end\n'
 FAIL = 'function TestCase.run() rtf.fail("it does not move") end\n'
@@ -86,7 +88,7 @@ def main() -> int:
     """Runs both parts and prints a table."""
     parser = argparse.ArgumentParser()
     parser.add_argument("rtf", type=Path)
-    parser.add_argument("--minutes", type=float, default=6)
+    parser.add_argument("--minutes", type=float, default=8)
     parser.add_argument("--runs", type=int, default=5000)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="rtf-soak-") as name:
@@ -184,7 +186,7 @@ def many_runs(bench: Bench, runs: int) -> list[str]:
                 problems.append(f"exit code {run.returncode} of run {number}")
                 break
     print(f"rtf serve: {runs} runs of 20 tests")
-    return problems + meter.judge("rtf serve")
+    return problems + meter.judge("rtf serve", BYTES_A_RUN * runs / 2**20)
 
 
 def address(process: subprocess.Popen[bytes], output: Path) -> str:

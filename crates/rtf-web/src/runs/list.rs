@@ -1,7 +1,7 @@
 //! The list of all runs. The summary of a run that has ended is cached, so that
 //! its journal is read once.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
@@ -46,6 +46,15 @@ impl SummaryCache {
             known.insert(info.run.clone(), (stamp, info.clone()));
         }
     }
+
+    /// Forgets runs that were removed.
+    fn retain(&self, names: &[String]) {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if known.len() > names.len() {
+            let names: HashSet<_> = names.iter().map(String::as_str).collect();
+            known.retain(|name, _| names.contains(name.as_str()));
+        }
+    }
 }
 
 impl Runs {
@@ -58,6 +67,7 @@ impl Runs {
         filter: &RunFilter,
     ) -> Listing {
         let mut names = self.names();
+        self.listed.retain(&names);
         names.retain(|name| before.is_none_or(|before| name.as_str() < before));
         let until = Instant::now() + BUDGET;
         let (mut listing, mut unread) = (Listing::default(), Vec::new());
