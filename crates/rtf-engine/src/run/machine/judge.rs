@@ -197,6 +197,23 @@ mod tests {
     }
 
     #[test]
+    fn processes_that_a_test_leaves_are_a_problem_if_its_plan_says_so() {
+        let left = |commands: &[&str]| -> Vec<_> {
+            let process = |command: &&str| LeakedProcess {
+                pid: 1,
+                command: (*command).to_owned(),
+                owner: None,
+            };
+            commands.iter().map(process).collect()
+        };
+        assert_eq!(leak_problem(Leaks::Report, &left(&["sleep"])), None);
+        assert_eq!(leak_problem(Leaks::Fail, &[]), None);
+        let reason = |commands| leak_problem(Leaks::Fail, &left(commands)).unwrap();
+        assert_eq!(reason(&["sleep"]), "it left a process behind: sleep");
+        assert_eq!(reason(&["a", "b"]), "it left 2 processes behind, first: a");
+    }
+
+    #[test]
     fn a_reported_failure_decides_even_if_the_host_answers_passed() {
         let mut evidence = answered(Outcome::Passed, ExitStatus::Code(0));
         let reason = "the gripper is open".to_owned();
