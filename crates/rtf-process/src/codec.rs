@@ -1,12 +1,15 @@
 //! Lines of the host protocol, both ways.
 
 use std::borrow::Cow;
+use std::fmt;
 use std::path::Path;
 
 use rtf_model::protocol::{
     Initialize, Notification, PROTOCOL_VERSION, Reply, Request, RpcError, RpcMessage,
 };
-use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{DeserializeSeed, Error, IgnoredAny, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
 
 /// A line may not be longer than this, in bytes.
@@ -67,6 +70,9 @@ pub fn encode(id: Option<u64>, request: Request) -> Result<Vec<u8>, serde_json::
 /// Why the line is invalid, for users.
 pub fn decode(line: &[u8]) -> Result<HostMessage, String> {
     let text = std::str::from_utf8(line).map_err(|_| not_a_message(line, "it is not UTF-8"))?;
+    if let Ok(UsualNotification(notification)) = serde_json::from_str(text) {
+        return Ok(HostMessage::Notification(notification));
+    }
     let envelope: RpcEnvelope<'_> =
         serde_json::from_str(text).map_err(|error| not_a_message(line, &error.to_string()))?;
     match envelope {
@@ -85,6 +91,62 @@ pub fn decode(line: &[u8]) -> Result<HostMessage, String> {
                 .map_err(|error| not_a_message(line, &error.to_string()))
         }
         RpcEnvelope { .. } => Err(not_a_message(line, "neither a notification nor an answer")),
+    }
+}
+
+/// A notification with `jsonrpc`, `method` and `params` in this order, as hosts write it: it is
+/// read in one pass, others in two.
+struct UsualNotification(Notification);
+
+impl<'de> Deserialize<'de> for UsualNotification {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(UsualVisitor)
+    }
+}
+
+struct UsualVisitor;
+
+impl<'de> Visitor<'de> for UsualVisitor {
+    type Value = UsualNotification;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a notification")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+        if map.next_entry::<&str, IgnoredAny>()?.is_none_or(|(key, _)| key != "jsonrpc") {
+            return Err(A::Error::missing_field("jsonrpc"));
+        }
+        let rest = MapAccessDeserializer::new(TwoEntries { map, count: 0 });
+        Notification::deserialize(rest).map(UsualNotification)
+    }
+}
+
+/// A map that must not have more than two entries: a third may be the `id` of a request.
+struct TwoEntries<A> {
+    map: A,
+    count: u8,
+}
+
+impl<'de, A: MapAccess<'de>> MapAccess<'de> for TwoEntries<A> {
+    type Error = A::Error;
+
+    fn next_key_seed<K: DeserializeSeed<'de>>(
+        &mut self,
+        seed: K,
+    ) -> Result<Option<K::Value>, A::Error> {
+        let key = self.map.next_key_seed(seed)?;
+        match (self.count, &key) {
+            (2.., Some(_)) => Err(A::Error::custom("there is a third entry")),
+            _ => {
+                self.count += 1;
+                Ok(key)
+            }
+        }
+    }
+
+    fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, A::Error> {
+        self.map.next_value_seed(seed)
     }
 }
 
@@ -147,5 +209,32 @@ mod tests {
         assert!(error.starts_with("it wrote `this is not a message`"), "{error}");
         assert!(decode(br#"{"jsonrpc":"2.0","method":"nonsense","params":{}}"#).is_err());
         assert!(decode(&[0xFF, 0xFE]).is_err());
+    }
+
+    #[test]
+    fn the_order_of_the_members_does_not_matter() {
+        let lines = [
+            r#"{"jsonrpc":"2.0","method":"phase","params":{"phase":"run"}}"#,
+            r#"{"params":{"phase":"run"},"method":"phase","jsonrpc":"2.0"}"#,
+            r#"{"jsonrpc":"2.0","params":{"phase":"run"},"method":"phase"}"#,
+            r#"{"jsonrpc":"2.0","method":"phase","params":{"phase":"run"},"more":1}"#,
+        ];
+        for line in lines {
+            let decoded = decode(line.as_bytes());
+            let is_run = matches!(
+                decoded,
+                Ok(HostMessage::Notification(Notification::Phase { phase: Phase::Run }))
+            );
+            assert!(is_run, "{line}: {decoded:?}");
+        }
+        let requests = [
+            r#"{"jsonrpc":"2.0","id":1,"method":"phase","params":{"phase":"run"}}"#,
+            r#"{"jsonrpc":"2.0","method":"phase","id":1,"params":{"phase":"run"}}"#,
+            r#"{"jsonrpc":"2.0","method":"phase","params":{"phase":"run"},"id":1}"#,
+        ];
+        for line in requests {
+            let error = decode(line.as_bytes()).unwrap_err();
+            assert_eq!(error, "it asks for `phase`, but the runner answers no requests", "{line}");
+        }
     }
 }

@@ -6,6 +6,7 @@ mod faults;
 mod hooks;
 mod order;
 mod record;
+mod reports;
 mod samples;
 mod shared_hosts;
 mod support;

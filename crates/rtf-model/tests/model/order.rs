@@ -15,15 +15,18 @@ pub fn check(events: &[Event]) -> Result<(), String> {
     checker.finish().map_err(|error| error.to_string())
 }
 
-fn check_body(repetitions: u32, body: impl IntoIterator<Item = EventKind>) -> Result<(), String> {
+pub fn check_body(
+    repetitions: u32,
+    body: impl IntoIterator<Item = EventKind>,
+) -> Result<(), String> {
     check(&stream(opened(repetitions).into_iter().chain(body).chain(closed())))
 }
 
-fn starting(attempt: u32) -> EventKind {
+pub fn starting(attempt: u32) -> EventKind {
     EventKind::FixtureStarting { fixture: SIMULATOR, attempt }
 }
 
-fn ready() -> EventKind {
+pub fn ready() -> EventKind {
     EventKind::FixtureReady { fixture: SIMULATOR }
 }
 
@@ -32,11 +35,11 @@ fn collapsed() -> EventKind {
     EventKind::FixtureCollapsed { fixture: SIMULATOR, reason, log_tail: Vec::new() }
 }
 
-fn stopping() -> EventKind {
+pub fn stopping() -> EventKind {
     EventKind::FixtureStopping { fixture: SIMULATOR }
 }
 
-fn stopped() -> EventKind {
+pub fn stopped() -> EventKind {
     EventKind::FixtureStopped { fixture: SIMULATOR, problem: None, log_tail: Vec::new() }
 }
 
