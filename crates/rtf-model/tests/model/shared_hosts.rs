@@ -1,6 +1,6 @@
 //! What hosts that tests share use.
 
-use crate::order::check;
+use crate::order::{check, ready, starting, stopped, stopping};
 use crate::record::record;
 use crate::support::*;
 use rtf_model::{EventKind, Resource, Source, TestId, Usage, Verdict};
@@ -56,6 +56,15 @@ fn only_the_host_of_a_running_test_reports_its_tests_served() {
     assert!(told.contains("only a shared host reports"), "{told}");
     let told = body(used(Source::Fixture(SIMULATOR), Some(1), 0)).unwrap_err();
     assert!(told.contains("fixture 0 is not running"), "{told}");
+    let with_fixture = |tests_served| {
+        let fixture = [starting(1), ready(), used(Source::Fixture(SIMULATOR), tests_served, 0)];
+        let rest = [stopping(), stopped(), skipped(0)];
+        let body = fixture.into_iter().chain(rest);
+        check(&stream(opened(1).into_iter().chain(body).chain(closed())))
+    };
+    assert_eq!(with_fixture(None), Ok(()));
+    let told = with_fixture(Some(1)).unwrap_err();
+    assert!(told.contains("only a shared host reports"), "{told}");
     let late = [started(1, 1), finished(Verdict::Passed), used(Source::Test(TEST), Some(1), 0)];
     let told = check(&stream(opened(1).into_iter().chain(late).chain(closed()))).unwrap_err();
     assert!(told.contains("test 0 is not running"), "{told}");
