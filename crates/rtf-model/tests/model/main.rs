@@ -10,3 +10,4 @@ mod reports;
 mod samples;
 mod shared_hosts;
 mod support;
+mod views;
