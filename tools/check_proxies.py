@@ -61,7 +61,7 @@ def main() -> int:
 def relayed(run: Run) -> None:
     """Without a fault, the proxy passes all messages on, as they are."""
     points = signals(run, "right")
-    # The first test waits for one of the signals; the reader may find the other one later.
+    # The first test waits one second at most for the second signal.
     received = [value for _, value in points["elbow"]]
     published = [value for _, value in points["right"]]
     compared = published[published.index(received[5]) : -5]

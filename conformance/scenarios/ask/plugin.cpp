@@ -22,6 +22,7 @@ public:
         const std::string picture = folder + "/hand.png";
         std::ofstream(picture, std::ios::binary) << "\x89PNG\r\n\x1a\n";
         report("answer: " + ask("Is the hand\nclosed?", {"yes", "no"}, 20s, "no", picture));
+        std::filesystem::remove_all(folder);
         RTF_CASE("serial number")
         {
             report("answer: " + ask("Serial number?", {}, 5min, "SN-17"));

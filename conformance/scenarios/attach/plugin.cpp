@@ -19,6 +19,7 @@ public:
         const std::string path = folder + "/trace.csv";
         std::ofstream(path) << "t,q\n0,1\n";
         attach(path, "trace.csv", "text/csv");
+        std::filesystem::remove_all(folder);
     }
 };
 

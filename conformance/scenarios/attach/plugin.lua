@@ -1,7 +1,8 @@
 function TestCase.run()
-  local path = io.popen("mktemp -d"):read("l") .. "/trace.csv"
+  local path = os.tmpname()
   local trace = assert(io.open(path, "w"))
   trace:write("t,q\n0,1\n")
   trace:close()
   rtf.attach(path, "trace.csv", "text/csv")
+  os.remove(path)
 end
