@@ -1,24 +1,22 @@
 //! The host's end of the channel, which its threads share.
 
+mod attachments;
 mod cases;
 mod faults;
 mod findings;
 mod program;
 mod questions;
+mod requests;
 
 use std::collections::{BTreeMap, VecDeque};
 use std::os::unix::net::UnixStream;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use rtf_model::protocol::{Answer, CHANNEL_VARIABLE, Notification, QuestionEnd, Reply, RpcError};
-use rtf_model::{
-    Attachment, Location, Measurement, Message, MessageKind, Outcome, Phase, PictureCheck,
-    TrajectoryCheck,
-};
-use serde::Serialize;
+use rtf_model::protocol::{CHANNEL_VARIABLE, Notification, QuestionEnd};
+use rtf_model::{Location, Measurement, Message, MessageKind, Outcome, TrajectoryCheck};
 use serde_json::Value;
 
 use crate::cases::Cases;
@@ -184,74 +182,6 @@ impl Session {
         self.notify(&Notification::Trajectory(check));
     }
 
-    /// Copies a file into the test's results. Afterwards the plug-in may change or remove
-    /// the file.
-    ///
-    /// # Errors
-    /// It cannot be copied.
-    pub fn attach(&self, mut attachment: Attachment) -> std::io::Result<()> {
-        attachment.case = self.0.cases.current();
-        self.forward_attachment(attachment).map(|_| ())
-    }
-
-    /// Does the same with a picture, and has it compared with a stored one. The runner compares,
-    /// so the plug-in does not learn the result.
-    ///
-    /// # Errors
-    /// It cannot be copied.
-    pub fn check_picture(
-        &self,
-        (name, picture): (String, String),
-        check: PictureCheck,
-    ) -> std::io::Result<()> {
-        self.attach(Attachment {
-            name,
-            path: picture,
-            media_type: String::new(),
-            case: None,
-            picture: Some(Box::new(check)),
-            omitted: false,
-        })
-    }
-
-    /// Does the same for a program that the host started, which knows the case. Returns the
-    /// path of the copy.
-    ///
-    /// # Errors
-    /// It cannot be copied.
-    pub fn forward_attachment(&self, mut attachment: Attachment) -> std::io::Result<String> {
-        let path = Path::new(&attachment.path);
-        let mut source = unix::open_regular(path)?;
-        // Without a directory, the runner copies the file as soon as it can.
-        if let Some(copy) = self.next_copy(&attachment.name, path) {
-            std::fs::create_dir_all(copy.parent().unwrap_or(&copy))?;
-            std::io::copy(&mut source, &mut std::fs::File::create(&copy)?)?;
-            attachment.path = copy.to_string_lossy().into_owned();
-        }
-        let copy = attachment.path.clone();
-        self.notify(&Notification::Attached(attachment));
-        Ok(copy)
-    }
-
-    /// The path for the copy of an attached file: `3-plot.png`. A name without an
-    /// extension gets that of the file.
-    fn next_copy(&self, name: &str, file: &Path) -> Option<PathBuf> {
-        let safe = |c: char| if c.is_alphanumeric() || ".-_".contains(c) { c } else { '_' };
-        let extension = Path::new(name).extension().is_none().then(|| file.extension()).flatten();
-        let extension = extension.map(|own| format!(".{}", own.to_string_lossy()));
-        let name: String =
-            name.chars().chain(extension.iter().flat_map(|own| own.chars())).map(safe).collect();
-        let mut state = self.state();
-        state.attached += 1;
-        let number = state.attached;
-        state.attachments_dir.as_ref().map(|dir| dir.join(format!("{number}-{name}")))
-    }
-
-    /// Sets the directory for copies of attached files.
-    pub(crate) fn set_attachments_dir(&self, dir: Option<&str>) {
-        self.state().attachments_dir = dir.map(PathBuf::from);
-    }
-
     /// Reports an error of the plug-in that it did not report itself.
     pub(crate) fn error(&self, text: String, location: Option<Location>) {
         let (kind, comparison) = (MessageKind::Error, None);
@@ -313,140 +243,6 @@ impl Session {
     /// The channel, for the thread that reads it.
     pub(crate) fn channel(&self) -> Arc<UnixStream> {
         Arc::clone(&self.0.channel)
-    }
-
-    /// Queues a request that was read.
-    pub(crate) fn push(&self, incoming: Incoming) {
-        self.state().incoming.push_back(incoming);
-        self.0.changed.notify_all();
-    }
-
-    /// Asks the plug-in to stop, and returns whether one runs. If not, the runner's
-    /// notification crossed the answer. A number limits the stop to that request.
-    pub(crate) fn request_stop(&self, reason: &str, request: Option<u64>) -> bool {
-        // A thread that holds the lock is about to send.
-        if let Ok(mut sampling) = self.0.sampling.try_lock() {
-            sampling.send(&self.0.writer);
-        }
-        let mut state = self.state();
-        let is_asked = match (request, state.busy) {
-            (None, busy) => busy || !state.incoming.is_empty(),
-            (Some(_), true) => state.request == request,
-            (Some(_), false) => state.incoming.front().is_some_and(|next| next.id() == request),
-        };
-        if is_asked {
-            state.outcome.record(Outcome::Interrupted, reason);
-            state.stop_reason.get_or_insert_with(|| reason.to_owned());
-            self.0.stop.store(true, Ordering::Release);
-            self.0.changed.notify_all();
-        }
-        is_asked
-    }
-
-    /// The runner is gone: ends the process if a plug-in is loaded.
-    pub(crate) fn close(&self) {
-        let mut state = self.state();
-        if state.has_plugin {
-            unix::exit_now(1);
-        }
-        state.closed = true;
-        self.0.changed.notify_all();
-    }
-
-    /// Begins a request that was read on the main thread.
-    pub(crate) fn begin(&self, incoming: &Incoming) {
-        let mut state = self.state();
-        (state.busy, state.request) = (true, incoming.id());
-    }
-
-    /// The next request, `None` at the end of the channel.
-    pub(crate) fn next(&self) -> Option<Incoming> {
-        let mut state = self.state();
-        loop {
-            if let Some(incoming) = state.incoming.pop_front() {
-                (state.busy, state.request) = (true, incoming.id());
-                return Some(incoming);
-            }
-            if state.closed {
-                return None;
-            }
-            state = self.0.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
-        }
-    }
-
-    /// Records whether a plug-in is loaded, or about to be.
-    pub(crate) fn set_has_plugin(&self, has_plugin: bool) {
-        self.state().has_plugin = has_plugin;
-    }
-
-    /// Announces a phase of the test.
-    pub(crate) fn phase(&self, phase: Phase) {
-        self.0.cases.set_phase(phase);
-        self.notify(&Notification::Phase { phase });
-        if phase == Phase::Setup {
-            self.sampling().begin();
-        }
-    }
-
-    /// Whether the present request has no problem so far.
-    pub(crate) fn has_passed(&self) -> bool {
-        self.state().outcome.has_passed()
-    }
-
-    /// Records a problem of the present request that no message reports.
-    pub(crate) fn record(&self, outcome: Outcome, reason: &str) {
-        self.state().outcome.record(outcome, reason);
-    }
-
-    /// Records that a function stopped. It decides only if the plug-in reported nothing.
-    pub(crate) fn record_stopped(&self, reason: &str) {
-        self.state().outcome.record_stopped(reason);
-    }
-
-    /// Records that the runner gets a problem of the present request, if there is one:
-    /// threads of a fixture also report between requests.
-    fn record_reported(&self, outcome: Outcome) {
-        self.0.cases.record_problem();
-        let mut state = self.state();
-        if state.busy {
-            state.outcome.record_reported(outcome);
-        }
-    }
-
-    /// Resets the stop request, so that a tear-down that parks the robot can wait until
-    /// the runner asks again.
-    pub(crate) fn clear_stop(&self) {
-        let mut state = self.state();
-        state.stop_reason = None;
-        self.0.stop.store(false, Ordering::Release);
-    }
-
-    /// Ends the present request and returns its answer.
-    pub(crate) fn conclude(&self) -> Answer {
-        self.0.cases.end_attempt();
-        let mut state = self.state();
-        state.busy = false;
-        state.stop_reason = None;
-        self.0.stop.store(false, Ordering::Release);
-        state.outcome.take_answer()
-    }
-
-    /// Ends a request that concerned no plug-in. A stop request for the next one stays.
-    pub(crate) fn end_without_plugin(&self) {
-        self.state().busy = false;
-    }
-
-    /// Answers a request. A request without a number gets no answer.
-    pub(crate) fn answer<T: Serialize>(&self, id: Option<u64>, result: T) {
-        self.flush();
-        if id.is_some() {
-            self.0.writer.send(id, &Reply::Result(result));
-        }
-    }
-
-    /// Refuses a request.
-    pub(crate) fn refuse(&self, id: Option<u64>, error: RpcError) {
-        self.0.writer.send(id, &Reply::<()>::Error(error));
     }
 
     /// Sends all samples.
