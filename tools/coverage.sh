@@ -21,10 +21,13 @@ settings=$(cargo llvm-cov show-env --sh 2>/dev/null)
 eval "$settings"
 cargo llvm-cov clean --workspace
 cargo build --quiet --workspace --locked
-cargo test --quiet --workspace --locked --no-fail-fast
+tests=0
+# With nohup, SIGHUP would be ignored in the programs that the tests start.
+env --default-signal=HUP cargo test --quiet --workspace --locked --no-fail-fast || tests=$?
 
 if [ $# -gt 0 ]; then
   cargo llvm-cov report "$@"
 else
   cargo llvm-cov report --json --summary-only | python3 tools/coverage.py
 fi
+exit "$tests"
