@@ -14,6 +14,8 @@ llvm=$(rustc --version --verbose | sed -n 's/^LLVM version: \([0-9]*\).*/\1/p')
 have "llvm-profdata-$llvm" || install_packages "llvm-$llvm"
 tool=$(tools/cargo_tool.sh cargo-llvm-cov 0.9.1)
 export PATH=$tool:$PATH LLVM_COV=llvm-cov-$llvm LLVM_PROFDATA=llvm-profdata-$llvm
+# A process that is killed while it writes its profile damages it.
+export LLVM_PROFDATA_FLAGS=--failure-mode=all
 
 # The end-to-end tests build further programs, which have to be measured as well.
 export CARGO_TARGET_DIR=$TARGET/coverage
