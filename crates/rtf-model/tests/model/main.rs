@@ -2,7 +2,9 @@
 
 mod cases;
 mod concurrency;
+mod episodes;
 mod faults;
+mod fixtures;
 mod hooks;
 mod order;
 mod record;
