@@ -36,9 +36,9 @@ class Part:
 PARTS = {
     "judge": Part("crates/rtf-engine/src/run/machine/judge.rs", ["rtf-engine"]),
     "order": Part("crates/rtf-model/src/order.rs", ["rtf-model"]),
-    "record": Part("crates/rtf-model/src/record/*.rs", ["rtf-model", "rtf-report"]),
+    "record": Part("crates/rtf-model/src/record/*.rs", ["rtf-model", "rtf-report", "rtf-engine"]),
     "filter": Part("crates/rtf-plan/src/select/filter.rs", ["rtf-plan"]),
-    "statistics": Part("crates/rtf-statistics/src/**/*.rs", ["rtf-statistics"]),
+    "statistics": Part("crates/rtf-statistics/src/**/*.rs", ["rtf-statistics", "rtf-campaign"]),
 }
 
 
