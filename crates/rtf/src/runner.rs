@@ -20,7 +20,6 @@ use crate::command::VerbResult;
 use crate::control::ControlChannels;
 use crate::debug::DebugRequest;
 use crate::error::Failure;
-use crate::history::RunImport;
 use crate::plan::Planned;
 use crate::preflight::Prepared;
 use crate::request::RunRequest;
@@ -44,12 +43,11 @@ pub fn run(request: &RunRequest, planned: &Planned, prepared: Prepared, guard: L
     let ended = options.and_then(|options| {
         run_plan(&runtime, planned, options, &control, fanout.handle()).map_err(Failure::internal)
     });
-    let import = request.history.as_ref().map(RunImport::start);
     let finished =
         runtime.block_on(finish_reports(fanout, &stdout, &dir.path)).map_err(Failure::internal)?;
     guard.finish();
-    if let Some(import) = import {
-        import.finish(&finished.record);
+    if let Some(history) = &request.history {
+        history::import_run(history, &finished.record);
     }
     for collector in &request.collectors {
         collector.push(&finished.record);

@@ -14,7 +14,6 @@ use crate::control::ControlChannels;
 use crate::debug::DebugRequest;
 use crate::error::Failure;
 use crate::guarded::{self, Supervision};
-use crate::history::RunImport;
 use crate::request::{self, OutputRequest, RunRequest, config, history_target};
 use crate::{executor, history, operator, outputs, plan, preflight, reports, runner};
 
@@ -73,7 +72,7 @@ pub fn run(args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
     let complete = |journal: &Path, record: &Record| {
         outputs::complete(&output, journal, record);
         if let Ok(Some(history)) = history_target(&args) {
-            RunImport::start(&history).finish(record);
+            history::import_run(&history, record);
         }
         for collector in request::collectors(&args).into_iter().flatten() {
             collector.push(record);

@@ -12,9 +12,8 @@ use super::submission::Submission;
 use crate::cli::RunArgs;
 use crate::command::{VerbResult, merge};
 use crate::error::Failure;
-use crate::history::RunImport;
 use crate::request::{self, OutputRequest, history_target};
-use crate::{exit, outputs, terminal};
+use crate::{exit, history, outputs, terminal};
 
 /// The last attempt of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,7 +102,7 @@ fn finish(args: &RunArgs, dir: &RunDir) -> Result<(), Failure> {
     let record = &stored.record;
     outputs::complete(&OutputRequest::resolve(args), &dir.journal(), record);
     if let Some(history) = history_target(args)? {
-        RunImport::start(&history).finish(record);
+        history::import_run(&history, record);
     }
     for collector in request::collectors(args)? {
         collector.push(record);

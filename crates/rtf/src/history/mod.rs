@@ -8,9 +8,7 @@ mod past_tests;
 mod source;
 
 use std::ffi::OsStr;
-use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
-use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use rtf_history::{Location, RunSelection, Store, StoreError};
@@ -116,49 +114,22 @@ pub fn without_password(argument: &str) -> String {
     masked().unwrap_or_else(|| argument.to_owned())
 }
 
-/// The import of a run into a history, which a thread opens while the run's reports are written.
-pub struct RunImport<'a> {
-    target: &'a HistoryTarget,
-    /// `None`: the thread could not be started.
-    opened: Option<JoinHandle<Result<Store, StoreError>>>,
-}
-
-impl<'a> RunImport<'a> {
-    /// Begins to open the history.
-    pub fn start(target: &'a HistoryTarget) -> Self {
-        let database = target.database.clone();
-        let thread = thread::Builder::new().name("history".to_owned());
-        Self { target, opened: thread.spawn(move || open(&database)).ok() }
+/// Imports a run that has ended, and earlier ones that are not in the history. Prints one
+/// warning if that fails.
+pub fn import_run(target: &HistoryTarget, record: &Record) {
+    let dir = record.run.as_ref().map(|run| target.results.join(&run.run));
+    // Without its journal, the run cannot be shown, and an error was printed.
+    if !dir.is_some_and(|dir| dir.join(JOURNAL).is_file()) {
+        return;
     }
-
-    /// Imports a run that has ended, and earlier ones that are not in the history. Prints one
-    /// warning if that fails.
-    pub fn finish(self, record: &Record) {
-        let Self { target, opened } = self;
-        let opened = match opened {
-            Some(thread) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
-            None => open(&target.database),
-        };
-        let dir = record.run.as_ref().map(|run| target.results.join(&run.run));
-        // Without its journal, the run cannot be shown, and an error was printed.
-        if !dir.is_some_and(|dir| dir.join(JOURNAL).is_file()) {
-            return;
-        }
-        let imported = opened.and_then(|mut store| {
-            store.import(record)?;
-            catch_up(&mut store, &target.results)
-        });
-        if let Err(error) = imported {
-            terminal::notice(format!("warning: {}", warning("run", &error)));
-        }
+    let imported = Store::open(&target.database).and_then(|mut store| {
+        store.keep_log()?;
+        store.import(record)?;
+        catch_up(&mut store, &target.results)
+    });
+    if let Err(error) = imported {
+        terminal::notice(format!("warning: {}", warning("run", &error)));
     }
-}
-
-/// Opens a history for an import.
-fn open(database: &Location) -> Result<Store, StoreError> {
-    let store = Store::open(database)?;
-    store.keep_log()?;
-    Ok(store)
 }
 
 fn warning(what: &str, error: &StoreError) -> String {
