@@ -39,7 +39,8 @@ def group(bench: Bench) -> Group:
     rest = suite.tests("dll", "Trivial", TESTS - 2)
     file = suite.write(bench, "page", [reports, ticker, *rest])
     live = Work(LIVE, lambda: measure_live(bench, file), missing())
-    served = Work(SERVED, lambda: measure_served(bench), missing())
+    name_of_live = remembered(bench)
+    served = Work(SERVED, lambda: measure_served(bench, name_of_live.read_text()), missing())
     critical = '<test name="critical" critical="true">Fails</test>'
     many = suite.write(bench, "page-many", [critical, *suite.tests("dll", "Trivial", MANY - 1)])
     large = Work(LARGE, lambda: measure_large(bench, many), missing())
@@ -70,13 +71,18 @@ def measure_live(bench: Bench, file: Path) -> Samples:
     """Opens the page while the ticker runs."""
     with started(bench, "run", str(file)) as (_, url):
         found = measure_page(url, TICKER)
+    remembered(bench).write_text((bench.results / "latest").resolve().name, encoding="utf-8")
     return {PAINT: found["paint"], LATE: found["lateness"], FRAME: found["frames"]}
 
 
-def measure_served(bench: Bench) -> Samples:
-    """Opens the page of the newest run, which `measure_live` created."""
+def remembered(bench: Bench) -> Path:
+    """The file with the name of the run that `measure_live` created."""
+    return bench.directory / "page-run"
+
+
+def measure_served(bench: Bench, name: str) -> Samples:
+    """Opens the page of a run that has ended."""
     with started(bench, "serve") as (process, url):
-        name = (bench.results / "latest").resolve().name
         found = measure_page(f"{url.split('#')[0]}#/runs/{name}", "")
         memory = peak_mb(process.pid)
     names = {"opened": OPENED, "paint": PAINT, "frames": FRAME}
@@ -85,8 +91,8 @@ def measure_served(bench: Bench) -> Samples:
 
 def measure_large(bench: Bench, file: Path) -> Samples:
     """Opens the page of a run whose first test fails, so that all others are skipped."""
-    with suite.Run(bench, file, codes=(1,)):
-        return measure_served(bench)
+    with suite.Run(bench, file, codes=(1,)) as run:
+        return measure_served(bench, run.directory.name)
 
 
 @contextmanager
