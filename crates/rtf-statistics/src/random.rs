@@ -190,6 +190,15 @@ mod tests {
     }
 
     #[test]
+    fn a_real_is_made_of_the_bits_with_the_same_index() {
+        let mut stream = RandomStream::new(7, "value", "payload");
+        let reals = [0, 1, 5].map(|index| stream.unit(index));
+        assert_eq!(reals, [0, 1, 5].map(|index| unit(stream.bits(index))));
+        assert!(reals.iter().all(|real| 0.0 < *real && *real < 1.0), "{reals:?}");
+        assert_ne!(reals[0], reals[1]);
+    }
+
+    #[test]
     fn reals_exclude_both_ends() {
         assert_eq!(unit(0), 2.0_f64.powi(-53));
         assert_eq!(unit(u64::MAX), 1.0 - 2.0_f64.powi(-53));
