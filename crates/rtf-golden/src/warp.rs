@@ -80,12 +80,13 @@ pub fn warp(first: &[f64], second: &[f64], radius: usize) -> Option<Warp> {
 #[must_use]
 pub fn by_warp(got: &Trajectory, expected: &Trajectory, band: f64) -> Option<Comparison> {
     let longest = got.duration().max(expected.duration());
-    if longest <= 0.0 {
-        return Some(by_time(got, expected));
-    }
     let points = got.points().len().max(expected.points().len());
     let count = points.clamp(MIN_VALUES, MAX_VALUES);
+    // The smallest durations cannot be divided.
     let step = longest / (count - 1) as f64;
+    if step <= 0.0 {
+        return Some(by_time(got, expected));
+    }
     let values = |trajectory: &Trajectory| {
         let count = (trajectory.duration() / step).round() as usize + 1;
         trajectory.resampled(step, count)
