@@ -118,6 +118,13 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_smallest_duration_is_compared_by_time() {
+        let points = [(0.0, 1.0), (f64::from_bits(1), 2.0)];
+        let trajectory = Trajectory::new(&points).unwrap();
+        assert_eq!(by_warp(&trajectory, &trajectory, 0.1).unwrap().worst.size(), 0.0);
+    }
+
+    #[test]
     fn a_delay_within_the_band_is_no_difference() {
         let first = [0.0, 0.0, 1.0, 2.0, 2.0];
         let second = [0.0, 1.0, 2.0, 2.0, 2.0];
