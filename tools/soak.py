@@ -36,8 +36,8 @@ INTERVAL = 0.5
 # A value grows if the test is this sure, and the growth over the whole time is beyond the noise.
 CONFIDENCE = 0.001
 NOISE = {"memory": 2.0, "descriptors": 3.0, "threads": 2.0, "zombies": 1.0, "files": 3.0}
-# Passed tests for each collapse, which delays the next test: a suite that always collapses is
-# restarted after 10 s.
+# Passed tests for each collapse. Between collapses that are less than 30 s apart, the delay of the
+# restart grows to 10 s, in which no test runs.
 SHARED, OWN = 1800, 600
 # The results of a run stay in memory until its reports are written, and what the page lists.
 BYTES_A_TEST = 1536

@@ -46,9 +46,9 @@ fn attached(fixture: Option<FixtureId>) -> EventKind {
 #[test]
 fn what_a_test_reports_lies_between_its_start_and_its_end() {
     let planned = || EventKind::CasesPlanned { test: TEST, names: vec!["home".to_owned()] };
-    let test_only = "event 5: test 0 is not running";
+    let early = "event 5: test 0 is not running";
     for report in [planned(), asked(1), answered(1), measured(None), attached(None)] {
-        assert_eq!(check_body(1, [report.clone()]), Err(test_only.to_owned()), "{report:?}");
+        assert_eq!(check_body(1, [report.clone()]), Err(early.to_owned()), "{report:?}");
     }
     let fixture = Some(SIMULATOR);
     for report in [measured(fixture), attached(fixture)] {
