@@ -85,11 +85,13 @@ def run(name: str, options: list[str]) -> Found:
     output.mkdir(parents=True)
     command = ["cargo", "mutants", "--output", str(output), "--no-shuffle", "--colors=never"]
     command += [f"--file={part.files}", *options]
-    results = [
-        run_tests([*command, f"--test-package={crate}", *(["--iterate"] if number else [])], output)
-        for number, crate in enumerate(part.crates)
-    ]
-    return Found(results[0].total() - len(results[-1].missed), results[-1].missed)
+    first, *further = part.crates
+    found = run_tests([*command, f"--test-package={first}"], output)
+    total = found.total()
+    for crate in further:
+        if found.missed:
+            found = run_tests([*command, f"--test-package={crate}", "--iterate"], output)
+    return Found(total - len(found.missed), found.missed)
 
 
 def run_tests(command: list[str], output: Path) -> Found:

@@ -2,7 +2,8 @@
 # Changes the code that judges, one small change at a time, and runs the tests of its crate. A change that no test
 # notices is printed; the exit code is 1 if more than a tenth of a part is not noticed.
 #
-#   tools/mutants.sh [PART …] [-- OPTION …]     parts of tools/mutants.py; options of cargo-mutants, `--shard 1/8`
+#   tools/mutants.sh [PART …] [-- OPTION …]     parts of tools/mutants.py; options of cargo-mutants, `--jobs 2`. Not
+#     `--shard`: the second crate would get other changes than the first.
 
 . "$(dirname "$0")/env.sh"
 
