@@ -54,6 +54,13 @@ step() {
   } 7>>"$results"
 }
 
+# What a step failed on, in few lines: panics of Rust tests with their messages, or else the end of its output.
+reason_of() {
+  local log=$logs/${1// /-}.log
+  printf -- '--- %s: %s\n' "$1" "${log#"$ROOT"/}"
+  grep -A 4 'panicked at' "$log" | head -n 40 | cut -c 1-400 | grep . || tail -n 12 "$log" | cut -c 1-400
+}
+
 # The names of the steps with a verdict.
 names_of() {
   sed -n "s/^$1 //p" "$results"
@@ -643,6 +650,9 @@ wait $robots || die "the steps with robots and frameworks ended early"
 mapfile -t passed < <(names_of ok)
 mapfile -t failed < <(names_of FAILED)
 mapfile -t skipped < <(names_of skipped)
+for name in "${failed[@]}"; do
+  reason_of "$name"
+done
 [ ${#failed[@]} -eq 0 ] || printf 'failed: %s\n' "${failed[@]}"
 if [ ${#skipped[@]} -gt 0 ]; then
   printf 'skipped, because they need middleware: %s\n' "$(printf '%s, ' "${skipped[@]}" | sed 's/, $//')"

@@ -71,8 +71,11 @@ impl SuiteMachine<'_> {
     }
 
     /// Whether fixtures are being notified that a test is about to start. One that has been
-    /// may report before the others have replied.
+    /// may report before the others have replied. After a collapse, all are notified again.
     fn will_start(&mut self, test: TestId) -> bool {
+        if self.end_reason.is_some() || !self.fixtures.all_ready() {
+            return false;
+        }
         let active = self.scheduler.get(test);
         active.is_some_and(|active| active.run.is_none() && active.is_notified)
     }

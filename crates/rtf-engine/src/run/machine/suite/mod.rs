@@ -133,6 +133,8 @@ impl<'p> SuiteMachine<'p> {
         }
         self.end_if_abandoned(&mut cx);
         self.judge_tests(&mut cx);
+        // Those of a fixture that collapsed, before it is stopped.
+        self.take_early_reports(&mut cx);
         self.advance(&mut cx);
         self.take_early_reports(&mut cx);
         (self.last_host, self.values, self.questions) = (last_host, values, questions);

@@ -1,10 +1,10 @@
 //! Faults that a fixture injects while tests run.
 
 use rtf_model::protocol::Notification;
-use rtf_model::{FaultInjected, FaultKind, FixtureId, Source, TestId};
+use rtf_model::{ExitStatus, FaultInjected, FaultKind, FixtureId, Source, TestId};
 
 use super::findings::{answer_notifications, notified, watched};
-use super::world::{TEST, World, suite};
+use super::world::{SECOND, TEST, World, suite};
 use crate::run::machine::ProcessEvent;
 
 const INJECTOR: Source = Source::Fixture(FixtureId(0));
@@ -51,6 +51,22 @@ fn a_fault_before_the_start_of_the_test_waits_for_it() {
     let [fault] = &*world.record.tests[0].attempts[0].faults else { panic!("one fault") };
     assert!(fault.removed.is_some());
     assert!(errors(&world).is_empty());
+}
+
+/// It is notified again after its restart, so the test for which the report waited does not start.
+#[test]
+fn reports_that_wait_are_errors_before_the_fixture_that_collapsed_stops() {
+    let mut plan = suite(1, 2);
+    (plan.fixtures[0].restarts, plan.fixtures[0].restart_delay) = (1, SECOND);
+    let mut world = notified(&plan);
+    inject(&mut world, 0, FaultKind::Stop);
+    remove(&mut world, 0);
+    world.exit(INJECTOR, ExitStatus::Signal(9));
+    let expected = [
+        "it reported about `test0`, which does not run: the fault `drop`",
+        "it removed the fault `drop`, which it had not injected",
+    ];
+    assert_eq!(errors(&world), expected);
 }
 
 /// The event stream stays legal.
