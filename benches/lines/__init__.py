@@ -10,6 +10,7 @@ from measuring.bench import Bench
 from measuring.model import Group
 
 from lines import (
+    building,
     campaigns,
     clients,
     collapse,
@@ -41,6 +42,7 @@ MODULES = (
     clients,
     campaigns,
     slurm,
+    building,
 )
 
 
