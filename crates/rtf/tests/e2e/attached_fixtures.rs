@@ -94,13 +94,13 @@ fn it_is_waited_for_when_it_goes_and_comes_back() {
 #[test]
 fn one_that_is_not_there_is_told_with_what_was_asked() {
     let port = free_port();
-    let folder = folder(port, "timeout='300ms'", "");
+    let folder = folder(port, "timeout='1s'", "");
     assert_eq!(folder.rtf(&["run", "s.xml"]).code, Some(1));
     let record = folder.journal().record;
     assert_eq!(record.verdict(TestId(0)), Some(Verdict::Skipped));
     let broken = record.fixtures[0].broken.clone().expect("broken");
     let start = format!(
-        "set-up failed: it was not ready within 300ms: no answer from http://127.0.0.1:{port}/"
+        "set-up failed: it was not ready within 1s: no answer from http://127.0.0.1:{port}/"
     );
     assert!(broken.starts_with(&start), "{broken}");
 }

@@ -56,7 +56,7 @@ fn slept(folder: &Folder) -> f64 {
 
 #[test]
 fn a_fast_simulator_makes_waits_short_and_a_slow_one_makes_limits_long() {
-    let fast = folder("20", "", "timeout='40s'", "30");
+    let fast = folder("20", "", "timeout='300s'", "30");
     let finished = fast.rtf(&["run", "s.xml"]);
     assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
     assert!(slept(&fast) < 20.0);

@@ -98,12 +98,12 @@ fn a_process_that_does_not_end_as_it_was_asked_to_is_a_problem_of_its_tear_down(
 #[test]
 fn a_suite_whose_tear_down_goes_beyond_its_timeout_does_not_pass() {
     let folder = Folder::new();
-    let text = "<suite name='s' timeout='500ms'><fixture type='process' name='arm'>\
-        <command>sh -c 'trap \"sleep 1; exit 0\" TERM; echo up; while :; do sleep 0.01; done'</command>\
+    let text = "<suite name='s' timeout='3s'><fixture type='process' name='arm'>\
+        <command>sh -c 'trap \"sleep 4; exit 0\" TERM; echo up; while :; do sleep 0.01; done'</command>\
         <ready log='up'/></fixture><test>T.lua</test></suite>";
     folder.file("T.lua", "TestCase = {}\nfunction TestCase.run() end\n").file("s.xml", text);
     let finished = folder.rtf(&["run", "s.xml"]);
     assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
     let problem = &folder.journal().record.fixtures[0].problems[0].1;
-    assert_eq!(problem, "it was not torn down in time: the suite did not end within 500ms");
+    assert_eq!(problem, "it was not torn down in time: the suite did not end within 3s");
 }

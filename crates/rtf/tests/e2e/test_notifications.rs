@@ -95,14 +95,14 @@ fn what_a_recorder_keeps_is_shown_with_the_test() {
 fn a_recorder_that_hangs_collapses_and_the_verdict_stands() {
     let folder = Folder::new();
     let recorder = RECORDER.replace("        self.report", "        self.sleep(1000)\n        #");
-    let fixture = "<fixture notify-timeout='300ms'>Recorder.py</fixture>";
+    let fixture = "<fixture notify-timeout='2s'>Recorder.py</fixture>";
     suite(&folder, fixture, &recorder, "<test name='good'>Test.lua</test>\n");
     let finished = folder.rtf(&["run", "s.xml"]);
     assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
     let record = folder.journal().record;
     assert_eq!(record.tests[0].verdict(), Some(Verdict::Passed));
     let why = &record.fixtures[0].collapses[0].1;
-    assert_eq!(why, "testFinished did not end within 300ms");
+    assert_eq!(why, "testFinished did not end within 2s");
     assert!(nothing_left(&folder));
 }
 
