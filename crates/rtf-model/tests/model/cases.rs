@@ -184,6 +184,68 @@ fn a_record_knows_paths_durations_and_cases_that_did_not_run() {
     assert_eq!(cases.total(), 3);
 }
 
+/// The name of a case may contain a slash.
+#[test]
+fn the_depth_of_a_case_is_the_number_of_cases_around_it() {
+    let events = [
+        case(1, "a/b", None),
+        case(2, "c", Some(1)),
+        case(3, "d/e", Some(2)),
+        case_ends(3, Verdict::Passed),
+        case_ends(2, Verdict::Passed),
+        case_ends(1, Verdict::Passed),
+    ];
+    let record = record(body(events));
+    let depth = |id| record.tests[0].attempts[0].cases.get(CaseId(id)).unwrap().depth();
+    // The slash in the name of the first one counts for the cases in it.
+    assert_eq!([1, 2, 3].map(depth), [0, 2, 3]);
+}
+
+#[test]
+fn cases_are_counted_by_verdict_and_state() {
+    let names = vec!["a".into(), "b".into(), "c".into(), "d".into(), "never".into()];
+    let mut events = vec![EventKind::CasesPlanned { test: TEST, names }];
+    let verdicts = [Verdict::Passed, Verdict::Failed, Verdict::Skipped, Verdict::Crashed];
+    for ((number, name), verdict) in (1..).zip(["a", "b", "c", "d"]).zip(verdicts) {
+        events.extend([case(number, name, None), case_ends(number, verdict)]);
+    }
+    let with_plan = record(body(events.clone()));
+    let cases = &with_plan.tests[0].attempts[0].cases;
+    assert_eq!((cases.problems(), cases.total(), cases.not_run().len()), (2, 5, 1));
+    assert!(!cases.not_run().is_empty());
+    let all_ran = record(body(events.split_off(1)));
+    let cases = &all_ran.tests[0].attempts[0].cases;
+    assert_eq!((cases.problems(), cases.total()), (2, 4));
+    assert!(cases.not_run().is_empty());
+}
+
+/// A host does not know the numbers that the runner adds to names that repeat.
+#[test]
+fn a_case_is_selected_by_the_name_that_its_host_knows() {
+    let rows = [
+        ("joint", "joint"),
+        ("joint#2", "joint"),
+        ("joint#12", "joint"),
+        ("other#2", "other#2"),
+        ("joint#", "joint#"),
+        ("joint#2b", "joint#2b"),
+        ("joint#2/arm", "joint/arm"),
+        ("joint#2/arm#3", "joint/arm"),
+        ("joint#2/leg#3", "joint/leg#3"),
+        ("joint#2#3", "joint"),
+    ];
+    let events = (1..).zip(rows).flat_map(|(number, (name, _))| {
+        [case(number, name, None), case_ends(number, Verdict::Passed)]
+    });
+    let record = record(body(events));
+    let cases = &record.tests[0].attempts[0].cases;
+    let selectable: Vec<_> =
+        cases.kept().iter().map(|case| (&*case.path, cases.selectable_path(case))).collect();
+    for ((path, selectable), (name, expected)) in selectable.iter().zip(rows) {
+        assert_eq!((*path, selectable.as_str()), (name, expected));
+    }
+}
+
 /// Memory stays bounded; nothing that did not pass is lost.
 #[test]
 fn passed_cases_beyond_a_limit_are_only_counted() {

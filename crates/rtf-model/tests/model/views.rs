@@ -4,7 +4,8 @@ use crate::order::{ready, starting};
 use crate::record::record;
 use crate::support::*;
 use rtf_model::{
-    Damage, EventKind, FixtureId, HookId, Micros, Record, Source, SuiteId, TestId, Verdict,
+    Attachment, AttemptCounts, Damage, EventKind, FixtureId, HookId, Measurement, Message,
+    MessageKind, Micros, Record, Samples, Source, SuiteId, TestId, Verdict,
 };
 
 /// Two suites with a test and a hook each, and a fixture in the second one.
@@ -103,4 +104,99 @@ fn the_first_damages_of_a_journal_are_kept() {
     }
     assert_eq!(record.damages.len(), Damage::KEPT);
     assert_eq!(record.damages.last().map(|damage| damage.line), Some(Damage::KEPT as u64));
+}
+
+fn message(kind: MessageKind) -> EventKind {
+    let message = Message {
+        kind,
+        text: "x".to_owned(),
+        location: None,
+        comparison: None,
+        critical: false,
+        case: None,
+        interval: None,
+    };
+    EventKind::Message { source: Source::Test(TEST), message, test: None }
+}
+
+fn measured(value: f64, high: f64) -> EventKind {
+    let measurement = Measurement {
+        name: "lag".to_owned(),
+        value: Some(value),
+        unit: "s".to_owned(),
+        low: None,
+        high: Some(high),
+        learned: false,
+        location: None,
+        case: None,
+    };
+    EventKind::Measured { test: TEST, fixture: None, measurement }
+}
+
+fn sampled(values: [f64; 3], high: f64) -> EventKind {
+    let samples = Samples {
+        name: "elbow".to_owned(),
+        unit: String::new(),
+        low: None,
+        high: Some(high),
+        location: None,
+        points: [0.0, 0.1, 0.2].into_iter().zip(values.map(Some)).collect(),
+        case: None,
+        since: None,
+    };
+    EventKind::Sampled { test: TEST, samples }
+}
+
+fn attached() -> EventKind {
+    let attachment = Attachment {
+        name: "log".to_owned(),
+        path: "attachments/log.txt".to_owned(),
+        media_type: "text/plain".to_owned(),
+        case: None,
+        picture: None,
+        omitted: false,
+    };
+    EventKind::Attached { test: TEST, fixture: None, attachment }
+}
+
+#[test]
+fn the_reports_of_an_attempt_are_counted() {
+    let reports = [
+        message(MessageKind::Report),
+        message(MessageKind::Failure),
+        message(MessageKind::Error),
+        measured(0.1, 0.2),
+        measured(0.3, 0.2),
+        sampled([0.5, 1.5, 2.5], 1.0),
+        attached(),
+        attached(),
+    ];
+    let attempt = [started(1, 1)].into_iter().chain(reports).chain([finished(Verdict::Failed)]);
+    let record = record(opened(1).into_iter().chain(attempt).chain(closed()));
+    let expected = AttemptCounts {
+        messages: 3,
+        failures: 2,
+        measurements: 2,
+        samples: 3,
+        violations: 3,
+        attachments: 2,
+        output_bytes: 0,
+    };
+    assert_eq!(record.tests[0].attempts[0].counts, expected);
+}
+
+#[test]
+fn counts_of_attempts_are_added() {
+    let counts = |unit: u64| AttemptCounts {
+        messages: unit,
+        failures: 2 * unit,
+        measurements: 3 * unit,
+        samples: 4 * unit,
+        violations: 5 * unit,
+        attachments: 6 * unit,
+        output_bytes: 7 * unit,
+    };
+    let mut sum = counts(1);
+    sum += counts(10);
+    assert_eq!(sum, counts(11));
 }
