@@ -219,6 +219,15 @@ fn cases_are_counted_by_verdict_and_state() {
     assert!(cases.not_run().is_empty());
 }
 
+#[test]
+fn skipped_cases_are_noticed() {
+    let has = |verdict| {
+        let record = record(body([case(1, "a", None), case_ends(1, verdict)]));
+        record.tests[0].has_skipped_cases()
+    };
+    assert_eq!([Verdict::Passed, Verdict::Skipped].map(has), [false, true]);
+}
+
 /// A host does not know the numbers that the runner adds to names that repeat.
 #[test]
 fn a_case_is_selected_by_the_name_that_its_host_knows() {

@@ -94,3 +94,34 @@ fn what_hosts_keep_themselves_is_no_growth() {
     };
     assert_eq!((grows(600), grows(6000)), (0, 1));
 }
+
+/// Of the hosts that served the same tests, the one with the most measurements counts.
+#[test]
+fn one_host_counts_of_those_that_served_the_same_tests() {
+    let growing = |lengths: [u32; 2], leaks: [u64; 2]| {
+        let mut kinds = opened(lengths[0] + lengths[1]);
+        let served = lengths.into_iter().zip(leaks);
+        let uses = served.flat_map(|(length, leak)| (1..=length).map(move |n| (n, leak)));
+        for (repetition, (tests_served, leak)) in (1..).zip(uses) {
+            let memory = 8 * MIB + u64::from(tests_served) * leak;
+            let used = used(Source::Test(TEST), Some(tests_served), memory);
+            kinds.extend([started(repetition, 1), used, finished(Verdict::Passed)]);
+        }
+        record(kinds.into_iter().chain(closed())).suites[0].growing_hosts().len()
+    };
+    assert_eq!(growing([30, 60], [MIB, 0]), 0);
+    assert_eq!(growing([30, 60], [0, MIB]), 1);
+    assert_eq!(growing([60, 30], [MIB, 0]), 1);
+    // The first one of two with as many.
+    assert_eq!(growing([30, 30], [MIB, 0]), 1);
+    assert_eq!(growing([30, 30], [0, MIB]), 0);
+}
+
+#[test]
+fn the_growth_of_a_fixture_is_that_of_its_longest_life() {
+    let uses = (1..=30).map(|n| used(Source::Fixture(SIMULATOR), None, 8 * MIB + n * MIB));
+    let life = [starting(1), ready()].into_iter().chain(uses);
+    let record = record(opened(1).into_iter().chain(life));
+    let growth = record.fixtures[0].growth();
+    assert_eq!((growth.len(), growth[0].resource), (1, Resource::Memory));
+}
