@@ -5,7 +5,7 @@ use crate::record::record;
 use crate::support::*;
 use rtf_model::{
     Attachment, AttemptCounts, Damage, EventKind, FixtureId, HookId, Measurement, Message,
-    MessageKind, Micros, Record, Samples, Source, SuiteId, TestId, Verdict,
+    MessageKind, Micros, Phase, Record, Samples, Source, StopCause, SuiteId, TestId, Verdict,
 };
 
 /// Two suites with a test and a hook each, and a fixture in the second one.
@@ -199,4 +199,35 @@ fn counts_of_attempts_are_added() {
     let mut sum = counts(1);
     sum += counts(10);
     assert_eq!(sum, counts(11));
+}
+
+#[test]
+fn an_attempt_keeps_what_explains_it() {
+    let (cause, reason) = (StopCause::Timeout, "run did not end within 1s".to_owned());
+    let events = [
+        started(1, 1),
+        EventKind::TestPhase { test: TEST, phase: Phase::Setup },
+        EventKind::TestPhase { test: TEST, phase: Phase::Run },
+        measured(0.1, 0.2),
+        attached(),
+        EventKind::TestSlow { test: TEST },
+        EventKind::StackDumped { source: Source::Test(TEST), text: "main.cpp:7".to_owned() },
+        EventKind::TestStopping { test: TEST, cause, reason },
+        EventKind::ProcessesLeaked {
+            source: Source::Test(TEST),
+            processes: vec![process(7, None)],
+        },
+        finished(Verdict::TimedOut),
+    ];
+    let record = record(opened(1).into_iter().chain(events));
+    let test = &record.tests[0];
+    let attempt = &test.attempts[0];
+    let phases: Vec<_> = attempt.phases.iter().map(|(phase, _)| *phase).collect();
+    assert_eq!(phases, [Phase::Setup, Phase::Run]);
+    assert!(attempt.phases[0].1 > attempt.started);
+    assert_eq!((attempt.measurements.len(), attempt.attachments.len()), (1, 1));
+    assert_eq!((attempt.slow, attempt.stopped), (true, true));
+    assert_eq!((&attempt.stacks[..], attempt.leaked.len()), (&["main.cpp:7".to_owned()][..], 1));
+    assert_eq!(test.reason(), Some("timed-out for a reason"));
+    assert_eq!(test.duration(), std::time::Duration::from_millis(9));
 }
