@@ -36,7 +36,7 @@ class Part:
 PARTS = {
     "judge": Part("crates/rtf-engine/src/run/machine/judge.rs", ["rtf-engine"]),
     "order": Part("crates/rtf-model/src/order.rs", ["rtf-model"]),
-    "record": Part("crates/rtf-model/src/record/*.rs", ["rtf-model", "rtf-report", "rtf-engine"]),
+    "record": Part("crates/rtf-model/src/record/*.rs", ["rtf-model"]),
     "filter": Part("crates/rtf-plan/src/select/filter.rs", ["rtf-plan"]),
     "statistics": Part("crates/rtf-statistics/src/**/*.rs", ["rtf-statistics", "rtf-campaign"]),
 }

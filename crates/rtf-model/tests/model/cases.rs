@@ -228,6 +228,45 @@ fn skipped_cases_are_noticed() {
     assert_eq!([Verdict::Passed, Verdict::Skipped].map(has), [false, true]);
 }
 
+/// A case that failed only because of a case in it has no problem of its own.
+#[test]
+fn a_case_has_a_problem_of_its_own_or_that_of_a_case_in_it() {
+    let failure = |case| {
+        let EventKind::Message { source, mut message, test } = report(case) else { panic!() };
+        message.kind = MessageKind::Failure;
+        EventKind::Message { source, message, test }
+    };
+    let decided_by = |number: u32, by: u32| {
+        let EventKind::CaseFinished(end) = case_ends(number, Verdict::Failed) else { panic!() };
+        EventKind::CaseFinished(CaseFinished { decided_by: Some(CaseId(by)), ..end })
+    };
+    let events = [
+        case(1, "by another", None),
+        case(2, "inner", Some(1)),
+        failure(2),
+        case_ends(2, Verdict::Failed),
+        decided_by(1, 2),
+        case(3, "both", None),
+        case(4, "inner", Some(3)),
+        case_ends(4, Verdict::Failed),
+        failure(3),
+        decided_by(3, 4),
+        case(5, "passed", None),
+        report(5),
+        case_ends(5, Verdict::Passed),
+        case(6, "open", None),
+        case(7, "open inside", Some(6)),
+    ];
+    let record = record(body(events));
+    let attempt = &record.tests[0].attempts[0];
+    let own = attempt.cases.kept().iter().map(|case| attempt.has_own_problem(case));
+    let expected = [false, true, true, true, false, false, true];
+    assert_eq!(own.collect::<Vec<_>>(), expected);
+    let reported = (1..=5).map(|id| attempt.has_reported_problem(Some(CaseId(id))));
+    assert_eq!(reported.collect::<Vec<_>>(), [false, true, true, false, false]);
+    assert!(!attempt.has_reported_problem(None));
+}
+
 /// A host does not know the numbers that the runner adds to names that repeat.
 #[test]
 fn a_case_is_selected_by_the_name_that_its_host_knows() {

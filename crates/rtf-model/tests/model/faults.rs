@@ -1,6 +1,6 @@
 //! Injected faults: their order, and what a record keeps of them.
 
-use rtf_model::{EventKind, FaultInjected, FaultKind, OrderChecker, Record};
+use rtf_model::{AttemptRecord, EventKind, FaultInjected, FaultKind, OrderChecker, Record};
 
 use crate::support::{SUITE, TEST, run_started, stream, suite, test};
 
@@ -73,4 +73,15 @@ fn a_record_pairs_the_end_of_a_fault_with_its_beginning() {
     assert_eq!(ended, [true, true, false, false]);
     // The timeline of the page shows them.
     assert_eq!(lean.tests[0].attempts[0].faults, *faults);
+}
+
+/// Memory stays bounded.
+#[test]
+fn faults_beyond_a_limit_are_not_kept() {
+    let most = AttemptRecord::FAULTS_KEPT;
+    let mut record = Record::default();
+    for event in stream(in_test((0..most + 2).map(|_| injected("c", FaultKind::Kill)))) {
+        record.apply(&event);
+    }
+    assert_eq!(record.tests[0].attempts[0].faults.len(), most);
 }

@@ -182,7 +182,20 @@ fn the_reports_of_an_attempt_are_counted() {
         attachments: 2,
         output_bytes: 0,
     };
-    assert_eq!(record.tests[0].attempts[0].counts, expected);
+    let attempt = &record.tests[0].attempts[0];
+    assert_eq!(attempt.counts, expected);
+    let violations: Vec<_> = attempt.violations().map(|it| it.value).collect();
+    assert_eq!(violations, [Some(0.3)]);
+}
+
+#[test]
+fn a_measurement_outside_its_limits_is_a_problem() {
+    let has = |value| {
+        let events = [started(1, 1), measured(value, 0.2), finished(Verdict::Passed)];
+        let record = record(opened(1).into_iter().chain(events));
+        record.tests[0].attempts[0].has_reported_problem(None)
+    };
+    assert_eq!([0.1, 0.3].map(has), [false, true]);
 }
 
 #[test]
@@ -227,6 +240,7 @@ fn an_attempt_keeps_what_explains_it() {
     assert!(attempt.phases[0].1 > attempt.started);
     assert_eq!((attempt.measurements.len(), attempt.attachments.len()), (1, 1));
     assert_eq!((attempt.slow, attempt.stopped), (true, true));
+    assert!(!attempt.has_reported_problem(None));
     assert_eq!((&attempt.stacks[..], attempt.leaked.len()), (&["main.cpp:7".to_owned()][..], 1));
     assert_eq!(test.reason(), Some("timed-out for a reason"));
     assert_eq!(test.duration(), std::time::Duration::from_millis(9));
