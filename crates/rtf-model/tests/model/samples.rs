@@ -30,6 +30,17 @@ fn the_first_sample_outside_is_told_with_its_time() {
 }
 
 #[test]
+fn the_duration_of_a_signal_begins_with_its_first_sample() {
+    let (mut record, points) = (Record::default(), [(2.0, Some(0.5)), (4.5, Some(1.5))]);
+    let sampled = EventKind::Sampled { test: TEST, samples: elbow(None, &points) };
+    let started = EventKind::TestStarted { test: TEST, repetition: 1, attempt: 1 };
+    let kinds = [run_started(), suite(0), test(0, 0, 1), started, sampled];
+    stream(kinds).iter().for_each(|event| record.apply(event));
+    let summary = record.tests[0].attempts[0].series[0].summary();
+    assert_eq!(summary, "2 samples in 2.5 s, 0.5 … 1.5 rad, mean 1 rad");
+}
+
+#[test]
 fn a_record_keeps_a_signal_in_numbers() {
     let started = EventKind::TestStarted { test: TEST, repetition: 1, attempt: 1 };
     let sampled = |points| EventKind::Sampled { test: TEST, samples: elbow(Some(1.0), points) };

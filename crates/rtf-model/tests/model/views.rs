@@ -166,6 +166,7 @@ fn the_reports_of_an_attempt_are_counted() {
         message(MessageKind::Failure),
         message(MessageKind::Error),
         measured(0.1, 0.2),
+        measured(0.2, 0.2),
         measured(0.3, 0.2),
         sampled([0.5, 1.5, 2.5], 1.0),
         attached(),
@@ -176,7 +177,7 @@ fn the_reports_of_an_attempt_are_counted() {
     let expected = AttemptCounts {
         messages: 3,
         failures: 2,
-        measurements: 2,
+        measurements: 3,
         samples: 3,
         violations: 3,
         attachments: 2,
