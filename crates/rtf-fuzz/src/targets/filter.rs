@@ -7,6 +7,8 @@ use rtf_plan::suite::SourceText;
 
 use super::labels::{NAME, check_label};
 
+const TOO_DEEP: &str = "too deeply nested";
+
 /// A filter expression.
 pub fn check(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
@@ -19,8 +21,12 @@ pub fn check(data: &[u8]) {
         }
     };
     let printed = print(&filter);
-    let again = parse(&SourceText::new(NAME, printed.clone()));
-    let again = again.unwrap_or_else(|problem| panic!("`{printed}`: {problem:?}"));
+    let again = match parse(&SourceText::new(NAME, printed.clone())) {
+        Ok(again) => again,
+        // The printed parentheses are further levels.
+        Err(problem) if problem.labels.iter().any(|label| label.text == TOO_DEEP) => return,
+        Err(problem) => panic!("`{printed}`: {problem:?}"),
+    };
     assert_eq!(print(&again), printed, "printed twice");
     for subject in SUBJECTS {
         let matched = filter.apply(&subject);
