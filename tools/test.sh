@@ -54,11 +54,15 @@ step() {
   } 7>>"$results"
 }
 
-# What a step failed on, in few lines: panics of Rust tests with their messages, or else the end of its output.
+# Why a step failed, in few lines: the Rust tests that failed and their first panics, or the end of its output.
 reason_of() {
-  local log=$logs/${1// /-}.log
+  local log=$logs/${1// /-}.log reason
+  reason=$(
+    grep -a '^test .* FAILED$' "$log" | head -n 20 || true
+    grep -a -A 4 'panicked at' "$log" | head -n 30 || true
+  )
   printf -- '--- %s: %s\n' "$1" "${log#"$ROOT"/}"
-  grep -A 4 'panicked at' "$log" | head -n 40 | cut -c 1-400 | grep . || tail -n 12 "$log" | cut -c 1-400
+  printf '%s\n' "${reason:-$(tail -n 12 "$log")}" | cut -c 1-400
 }
 
 # The names of the steps with a verdict.

@@ -1,16 +1,9 @@
 //! What a record keeps of questions to the operator.
 
 use crate::record::record;
+use crate::reports::asked;
 use crate::support::*;
-use rtf_model::{
-    AnswerChannel, EventKind, Question, QuestionAsked, QuestionClosed, QuestionRecord, Record,
-    Respondent,
-};
-
-fn asked(question: u32) -> EventKind {
-    let question = Question { question, text: "closed?".to_owned(), ..Question::default() };
-    EventKind::QuestionAsked(Box::new(QuestionAsked { test: TEST, question }))
-}
+use rtf_model::{AnswerChannel, EventKind, QuestionClosed, QuestionRecord, Record, Respondent};
 
 fn answered(question: u32, answer: &str) -> EventKind {
     let by = Some(Respondent { via: AnswerChannel::Page, who: None });

@@ -20,7 +20,7 @@ fn run(repetitions: u32, body: impl IntoIterator<Item = EventKind>) -> Record {
     record(opened(repetitions).into_iter().chain(body).chain(closed()))
 }
 
-fn message(kind: MessageKind) -> EventKind {
+pub fn message(kind: MessageKind) -> EventKind {
     let message = Message {
         kind,
         text: "x".into(),

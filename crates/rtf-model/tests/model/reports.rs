@@ -7,7 +7,7 @@ use rtf_model::{
     SuiteId, Verdict,
 };
 
-fn asked(question: u32) -> EventKind {
+pub fn asked(question: u32) -> EventKind {
     let question = Question { question, text: "closed?".to_owned(), ..Question::default() };
     EventKind::QuestionAsked(Box::new(QuestionAsked { test: TEST, question }))
 }
@@ -31,7 +31,7 @@ fn measured(fixture: Option<FixtureId>) -> EventKind {
     EventKind::Measured { test: TEST, fixture, measurement }
 }
 
-fn attached(fixture: Option<FixtureId>) -> EventKind {
+pub fn attached(fixture: Option<FixtureId>) -> EventKind {
     let attachment = Attachment {
         name: "log".to_owned(),
         path: "attachments/log.txt".to_owned(),

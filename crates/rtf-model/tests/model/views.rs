@@ -1,11 +1,12 @@
 //! What reports ask a record for: names, numbers of tests, damage.
 
 use crate::order::{ready, starting};
-use crate::record::record;
+use crate::record::{message, record};
+use crate::reports::attached;
 use crate::support::*;
 use rtf_model::{
-    Attachment, AttemptCounts, Damage, EventKind, FixtureId, HookId, Measurement, Message,
-    MessageKind, Micros, Phase, Record, Samples, Source, StopCause, SuiteId, TestId, Verdict,
+    AttemptCounts, Damage, EventKind, FixtureId, HookId, Measurement, MessageKind, Micros, Phase,
+    Record, Samples, Source, StopCause, SuiteId, TestId, Verdict,
 };
 
 /// Two suites with a test and a hook each, and a fixture in the second one.
@@ -106,19 +107,6 @@ fn the_first_damages_of_a_journal_are_kept() {
     assert_eq!(record.damages.last().map(|damage| damage.line), Some(Damage::KEPT as u64));
 }
 
-fn message(kind: MessageKind) -> EventKind {
-    let message = Message {
-        kind,
-        text: "x".to_owned(),
-        location: None,
-        comparison: None,
-        critical: false,
-        case: None,
-        interval: None,
-    };
-    EventKind::Message { source: Source::Test(TEST), message, test: None }
-}
-
 fn measured(value: f64, high: f64) -> EventKind {
     let measurement = Measurement {
         name: "lag".to_owned(),
@@ -147,18 +135,6 @@ fn sampled(values: [f64; 3], high: f64) -> EventKind {
     EventKind::Sampled { test: TEST, samples }
 }
 
-fn attached() -> EventKind {
-    let attachment = Attachment {
-        name: "log".to_owned(),
-        path: "attachments/log.txt".to_owned(),
-        media_type: "text/plain".to_owned(),
-        case: None,
-        picture: None,
-        omitted: false,
-    };
-    EventKind::Attached { test: TEST, fixture: None, attachment }
-}
-
 #[test]
 fn the_reports_of_an_attempt_are_counted() {
     let reports = [
@@ -169,8 +145,8 @@ fn the_reports_of_an_attempt_are_counted() {
         measured(0.2, 0.2),
         measured(0.3, 0.2),
         sampled([0.5, 1.5, 2.5], 1.0),
-        attached(),
-        attached(),
+        attached(None),
+        attached(None),
     ];
     let attempt = [started(1, 1)].into_iter().chain(reports).chain([finished(Verdict::Failed)]);
     let record = record(opened(1).into_iter().chain(attempt).chain(closed()));
@@ -223,7 +199,7 @@ fn an_attempt_keeps_what_explains_it() {
         EventKind::TestPhase { test: TEST, phase: Phase::Setup },
         EventKind::TestPhase { test: TEST, phase: Phase::Run },
         measured(0.1, 0.2),
-        attached(),
+        attached(None),
         EventKind::TestSlow { test: TEST },
         EventKind::StackDumped { source: Source::Test(TEST), text: "main.cpp:7".to_owned() },
         EventKind::TestStopping { test: TEST, cause, reason },
