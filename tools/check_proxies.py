@@ -9,6 +9,7 @@ SOURCE is `ros`, `ros2` or `yarp`, whose suite has this name in DIRECTORY.
 from __future__ import annotations
 
 import itertools
+import math
 import os
 import signal
 import sys
@@ -19,8 +20,11 @@ from run import Event, Run, expect, expect_in
 
 Points = list[tuple[float, float]]
 
-# The period of the arm, which publishes at 100 Hz.
-PERIOD_SECS = 0.01
+# The arm publishes the sine of its time.
+RATE_HZ = 100
+PERIOD_SECS = 1 / RATE_HZ
+# More than it publishes until the end of the test.
+MESSAGES = 100_000
 # A busy machine delays the arm, the proxy, and the signals.
 MARGIN_SECS = 0.2
 OFFSET = 10.0
@@ -70,6 +74,8 @@ def relayed(run: Run) -> None:
     # Signals are read without acknowledgement: a busy machine may lose some.
     lost = [value for value in compared if value not in received]
     expect(f"messages that did not pass: {lost}", len(lost) < 0.1 * len(compared), True)
+    sent = {math.sin(number / RATE_HZ) for number in range(MESSAGES)}
+    expect("messages that were changed", [v for v in received if v not in sent], [])
 
 
 def shifted(run: Run) -> None:
