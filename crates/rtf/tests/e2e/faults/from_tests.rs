@@ -44,10 +44,10 @@ const STRANGER: &str = r##"import rtf, subprocess
 REQUEST = """import socket, sys
 with socket.socket(socket.AF_UNIX) as connection:
     connection.connect(chr(0) + sys.argv[1])
-    connection.sendall(bytes("inject#drop#T#".replace("#", chr(10)), "ascii"))
     try:
+        connection.sendall(bytes("inject#drop#T#".replace("#", chr(10)), "ascii"))
         print(connection.recv(1000))
-    except ConnectionResetError:
+    except ConnectionError:
         print(b"")
 """
 OTHER = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", "/usr/bin/python3", "-c"]
