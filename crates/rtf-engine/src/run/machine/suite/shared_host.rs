@@ -1,9 +1,12 @@
 //! The shared host: successive tests with `isolation="shared"` use the same host as long
 //! as they pass.
 //!
-//! A host is assigned the next test while the present one runs, so that it never waits.
-//! If the runner has to check something between the two (fixtures or, in a soak, resource
-//! usage), the host is assigned the next test after the present one has ended.
+//! A host is assigned the next tests while the present one runs, so that neither side waits
+//! for the other after each short test. If the runner has to check something between two
+//! tests (fixtures or, in a soak, resource usage), or if the verdict of a test decides what
+//! follows, the host is assigned the next test after the present one has ended.
+
+use std::collections::VecDeque;
 
 use rtf_model::{Diagnostic, EventKind, ExitStatus, TestId};
 
@@ -17,12 +20,17 @@ use crate::run::machine::test::TestRun;
 use crate::run::machine::test::host::{HostChoice, TestRequest, assign};
 use rtf_plan::plan::{SuitePlan, TestPlan};
 
+/// So many tests are assigned at most.
+const MOST_ASSIGNED: usize = 16;
+/// When fewer than this are left, further ones are assigned together: the host wakes once.
+const FEW_ASSIGNED: usize = 8;
+
 #[derive(Debug)]
 pub(super) struct SharedHost<'p> {
     /// Whether a test may be assigned while another one runs.
     assigns_ahead: bool,
-    /// The test that was assigned ahead, and the host's id from its begin.
-    assigned: Option<(HostId, TestId, AttemptNumber)>,
+    /// The tests that were assigned ahead, in order, and the host's id from the begin of each.
+    assigned: VecDeque<(HostId, &'p TestPlan, AttemptNumber)>,
     /// The host has begun the assigned test, which is being started.
     begun: Option<HostId>,
     /// It has no test; it served this one last, with the fixtures' values of this version.
@@ -34,7 +42,8 @@ pub(super) struct SharedHost<'p> {
 impl SharedHost<'_> {
     pub(super) fn new(suite: &SuitePlan) -> Self {
         let assigns_ahead = suite.fixtures.is_empty() && !suite.repeats();
-        Self { assigns_ahead, assigned: None, begun: None, idle: None, killed: None }
+        let assigned = VecDeque::new();
+        Self { assigns_ahead, assigned, begun: None, idle: None, killed: None }
     }
 }
 
@@ -66,18 +75,26 @@ impl<'p> Scheduler<'p> {
         TestRequest { repetition: number.repetition, is_last, carried: None }
     }
 
-    /// Assigns the next test to the host of a running one.
+    /// Assigns the next tests to the host of a running one.
     pub(super) fn assign_ahead(&mut self, test: TestId, cx: &mut Context<'_>) {
-        if self.shared_host.assigned.is_some() || !self.shared_host.assigns_ahead {
+        let shared = &self.shared_host;
+        if !shared.assigns_ahead || shared.assigned.len() >= FEW_ASSIGNED {
             return;
         }
+        let last = shared.assigned.back().copied();
         let Some(active) = self.get(test) else { return };
-        let (plan, number) = (active.plan, active.number);
+        let running = (active.plan, active.number);
         let run = active.run.as_ref().filter(|run| run.can_share_host());
         let Some(host) = run.map(TestRun::host) else { return };
-        let Some((plan, next)) = self.successor(plan, number) else { return };
-        let host = assign(self.suite, plan, self.request(plan, next), host, cx);
-        self.shared_host.assigned = Some((host, plan.id, next));
+        let (mut host, mut plan, mut number) = last.unwrap_or((host, running.0, running.1));
+        while self.shared_host.assigned.len() < MOST_ASSIGNED
+            && !decides_what_follows(plan)
+            && let Some(next) = self.successor(plan, number)
+        {
+            (plan, number) = next;
+            host = assign(self.suite, plan, self.request(plan, number), host, cx);
+            self.shared_host.assigned.push_back((host, plan, number));
+        }
     }
 
     /// An attempt has finished. If its host has begun the next one, starts that one; false
@@ -88,14 +105,15 @@ impl<'p> Scheduler<'p> {
         run: &TestRun<'p>,
         cx: &mut Context<'_>,
     ) -> bool {
-        let assigned = self.shared_host.assigned.take();
         if !run.is_released() {
-            // The host has ended without the assigned test.
+            // The host has ended without the assigned tests.
+            self.shared_host.assigned.clear();
             return false;
         }
-        match assigned {
+        match self.shared_host.assigned.pop_front() {
             None => self.shared_host.idle = Some((run.host(), plan, cx.values().version())),
-            Some((host, test, number)) if self.next_due() == Some((test, number)) => {
+            Some((host, next, number)) if self.next_due() == Some((next.id, number)) => {
+                let test = next.id;
                 self.shared_host.begun = Some(host);
                 self.begin_next();
                 // There are no fixtures to notify.
@@ -105,7 +123,10 @@ impl<'p> Scheduler<'p> {
                 return true;
             }
             // The test that it has begun is no longer due.
-            Some((host, ..)) => self.kill_shared_host(host, 1, cx),
+            Some((host, ..)) => {
+                self.shared_host.assigned.clear();
+                self.kill_shared_host(host, 1, cx);
+            }
         }
         false
     }
@@ -155,6 +176,12 @@ impl<'p> Scheduler<'p> {
     }
 }
 
+/// Whether another test may follow than the next one in the suite, because the runner judges
+/// differently than the host.
+fn decides_what_follows(plan: &TestPlan) -> bool {
+    plan.settings.critical || plan.settings.retries.count > 0
+}
+
 impl SuiteMachine<'_> {
     /// A host without a test has ended.
     pub(super) fn on_idle_host_exit(
@@ -171,7 +198,7 @@ impl SuiteMachine<'_> {
         }
     }
 
-    /// The assigned host has ended before the test began.
+    /// The host has ended before its next test began.
     pub(super) fn restart_in_new_host(
         &mut self,
         test: TestId,
@@ -179,7 +206,7 @@ impl SuiteMachine<'_> {
         cx: &mut Context<'_>,
     ) {
         self.warn_host_exited(status, cx);
-        self.scheduler.shared_host.assigned = None;
+        self.scheduler.shared_host.assigned.clear();
         let Some(active) = self.scheduler.get(test) else { return };
         let (plan, number) = (active.plan, active.number);
         let request = self.scheduler.request(plan, number);

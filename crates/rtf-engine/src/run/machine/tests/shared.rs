@@ -30,9 +30,18 @@ impl World<'_> {
 
     pub fn exit_idle(&mut self, host: HostId, status: ExitStatus) {
         self.idle.remove(&host);
-        match self.assigned.remove(&host) {
-            Some((next, ..)) => self.feed(Input::Host(next, ProcessEvent::NotStarted(status))),
-            None => self.feed(Input::Host(host, ProcessEvent::Exited(status, Vec::new()))),
+        if !self.assigned.contains_key(&host) {
+            self.feed(Input::Host(host, ProcessEvent::Exited(status, Vec::new())));
+        }
+        self.refuse_assigned(host, status);
+    }
+
+    /// A host that has ended begins none of its assigned tests.
+    pub fn refuse_assigned(&mut self, host: HostId, status: ExitStatus) {
+        let mut last = host;
+        while let Some((next, ..)) = self.assigned.remove(&last) {
+            self.feed(Input::Host(next, ProcessEvent::NotStarted(status)));
+            last = next;
         }
     }
 }
@@ -83,6 +92,69 @@ fn a_host_is_assigned_the_next_test_while_the_present_one_runs() {
     world.pass(2);
     world.finish();
     assert_eq!(world.record.verdict(TestId(2)), Some(Verdict::Passed));
+}
+
+#[test]
+fn several_tests_are_assigned_together() {
+    let plan = shared(0, 30);
+    let mut world = World::started(&plan);
+    initialized(&mut world, 0);
+    let assigned: Vec<_> = world.assigned.values().map(|(_, source, _)| *source).collect();
+    assert_eq!(assigned, (1..=16).map(source).collect::<Vec<_>>());
+    let counts = (0..29).map(|test| {
+        let host = answer_and_continue(&mut world, test);
+        world.release(host);
+        world.assigned.len()
+    });
+    let counts: Vec<_> = counts.collect();
+    assert_eq!(counts[..10], [15, 14, 13, 12, 11, 10, 9, 8, 16, 15]);
+    world.pass(29);
+    world.finish();
+    assert!(plan.tests.iter().all(|test| world.record.verdict(test.id) == Some(Verdict::Passed)));
+}
+
+#[test]
+fn a_host_that_crashes_begins_none_of_its_assigned_tests() {
+    let plan = shared(0, 4);
+    let mut world = World::started(&plan);
+    initialized(&mut world, 0);
+    let host = answer_and_continue(&mut world, 0);
+    world.release(host);
+    world.exit(source(1), ExitStatus::Signal(11));
+    assert!(world.assigned.is_empty());
+    initialized(&mut world, 2);
+    let host = answer_and_continue(&mut world, 2);
+    world.release(host);
+    world.pass(3);
+    world.finish();
+    let verdicts = [0, 1, 2, 3].map(|test| world.record.verdict(TestId(test)).unwrap());
+    assert_eq!(verdicts, [Verdict::Passed, Verdict::Crashed, Verdict::Passed, Verdict::Passed]);
+}
+
+/// The host does not know the failures, and continues.
+#[test]
+fn no_test_is_assigned_before_the_verdict_that_decides_whether_it_runs() {
+    let mut plan = shared(0, 5);
+    plan.tests[1].settings.retries.count = 1;
+    plan.tests[2].settings.critical = true;
+    let mut world = World::started(&plan);
+    initialized(&mut world, 0);
+    assert_eq!(world.assigned.len(), 1, "the next test has retries");
+    let mut last = HostId(0);
+    for (test, fails) in [(0, false), (1, true), (1, false), (2, true)] {
+        if fails {
+            world.failure(source(test), "it deviates", false);
+        }
+        last = answer_and_continue(&mut world, test);
+        world.release(last);
+        world.begin_assigned(last);
+        assert!(world.assigned.is_empty());
+    }
+    world.exit_idle(last, ExitStatus::Signal(9));
+    world.finish();
+    assert_eq!(world.record.tests[1].attempts.len(), 2);
+    assert_eq!(world.record.verdict(TestId(1)), Some(Verdict::Passed));
+    assert_eq!(world.record.final_verdict(TestId(3)), Verdict::Skipped);
 }
 
 #[test]

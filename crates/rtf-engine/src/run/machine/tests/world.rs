@@ -174,7 +174,8 @@ impl<'p> World<'p> {
                 Effect::Emit(kind) => self.emit(kind),
                 Effect::Spawn { host, source, .. } => drop(self.hosts.insert(host, source)),
                 Effect::Join { host, on, source, request, .. } => {
-                    assert!(self.hosts.contains_key(&on) || self.idle.contains(&on));
+                    let is_assigned = self.assigned.values().any(|(id, ..)| *id == on);
+                    assert!(is_assigned || self.hosts.contains_key(&on) || self.idle.contains(&on));
                     assert!(self.assigned.insert(on, (host, source, request)).is_none());
                 }
                 Effect::Send(host, id, request) => {
@@ -240,10 +241,14 @@ impl<'p> World<'p> {
         let host = self.host_of(source);
         if matches!(input, ProcessEvent::Exited(..) | ProcessEvent::SpawnFailed(_)) {
             self.hosts.remove(&host);
-            self.assigned.remove(&host);
             self.answered.remove(&host);
         }
+        let status = match &input {
+            ProcessEvent::Exited(status, _) => Some(*status),
+            _ => None,
+        };
         self.feed(Input::Host(host, input));
+        status.into_iter().for_each(|status| self.refuse_assigned(host, status));
     }
 
     pub fn exit(&mut self, source: Source, status: ExitStatus) {
