@@ -84,6 +84,17 @@ def test_the_second_plugin_of_a_host_is_not_the_first(tmp_path: Path) -> None:
     assert host.end()[0] == 0
 
 
+def test_a_shared_host_forgets_the_plugins_that_it_has_run(tmp_path: Path) -> None:
+    host = Host(tmp_path)
+    body = arm("import sys; self.report([n for n in sys.modules if n.startswith('rtf_plugin')])")
+    params = {**plugin(tmp_path, body), "is_last": False, "end_marker": "\0mark\n"}
+    for _ in range(3):
+        answer = host.ask("run-test", params)
+        assert answer["result"] == {"outcome": "passed", "continues": True}
+    assert host.texts() == [("report", "['rtf_plugin_plugin']")] * 3
+    host.channel.close()
+
+
 def test_output_comes_out_before_the_answer(tmp_path: Path) -> None:
     ran = run(tmp_path, arm("import sys\nprint('a')\nsys.stdout.write('b')"))
     assert ran.output == "a\nb"

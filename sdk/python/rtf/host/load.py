@@ -55,11 +55,22 @@ def _run_file(file: str) -> ModuleType:
     module.__file__ = file
     predecessor.add_module(module, source)
     sys.modules[name] = module
+    _loaded.append(name)
     directory = os.path.dirname(os.path.abspath(file))
     if sys.path[:1] != [directory]:
         sys.path.insert(0, directory)
     exec(code, module.__dict__)  # noqa: S102 - a host runs the user's file
     return module
+
+
+# The names of the loaded modules: `sys.modules` has many more.
+_loaded: list[str] = []
+
+
+def forget() -> None:
+    """Forget all loaded files: the next one may have the same name."""
+    while _loaded:
+        sys.modules.pop(_loaded.pop(), None)
 
 
 # The last loaded file: a shared host often loads it again.

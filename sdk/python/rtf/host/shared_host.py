@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-import sys
+
+from rtf.host import load
 
 # `prctl`'s number for: orphans below this process become its children.
 _SET_CHILD_SUBREAPER = 36
@@ -35,9 +36,7 @@ class SharedHost:
         """Whether the next test may begin; if so, end the present test's output."""
         if _has_children():
             return False
-        for name in [name for name in sys.modules if name.startswith("rtf_plugin_")]:
-            # The next plug-in may have the same name.
-            del sys.modules[name]
+        load.forget()
         try:
             for output in self._outputs:
                 _write(output, end_marker.encode())
