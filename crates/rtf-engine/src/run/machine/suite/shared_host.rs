@@ -4,7 +4,8 @@
 //! A host is assigned the next tests while the present one runs, so that neither side waits
 //! for the other after each short test. If the runner has to check something between two
 //! tests (fixtures or, in a soak, resource usage), or if the verdict of a test decides what
-//! follows, the host is assigned the next test after the present one has ended.
+//! follows (a hook, another attempt, the end of the suite), the host is assigned the next
+//! test after the present one has ended.
 
 use std::collections::VecDeque;
 
@@ -41,7 +42,8 @@ pub(super) struct SharedHost<'p> {
 
 impl SharedHost<'_> {
     pub(super) fn new(suite: &SuitePlan) -> Self {
-        let assigns_ahead = suite.fixtures.is_empty() && !suite.repeats();
+        let has_helpers = !suite.fixtures.is_empty() || !suite.hooks.is_empty();
+        let assigns_ahead = !has_helpers && !suite.repeats();
         let assigned = VecDeque::new();
         Self { assigns_ahead, assigned, begun: None, idle: None, killed: None }
     }

@@ -1,9 +1,9 @@
 //! Tests that share a host.
 
 use rtf_model::protocol::{Reply, Request};
-use rtf_model::{ExitStatus, Phase, Source, TestId, Usage, Verdict};
+use rtf_model::{ExitStatus, Phase, Source, TestId, Trigger, Usage, Verdict};
 
-use super::world::{World, suite};
+use super::world::{World, hook, suite};
 use crate::run::machine::{HostId, Input, ProcessEvent, StopLevel};
 use rtf_plan::plan::SuitePlan;
 use rtf_process::codec::INITIALIZE;
@@ -155,6 +155,15 @@ fn no_test_is_assigned_before_the_verdict_that_decides_whether_it_runs() {
     assert_eq!(world.record.tests[1].attempts.len(), 2);
     assert_eq!(world.record.verdict(TestId(1)), Some(Verdict::Passed));
     assert_eq!(world.record.final_verdict(TestId(3)), Verdict::Skipped);
+}
+
+#[test]
+fn no_test_is_assigned_before_a_hook_that_its_predecessor_may_trigger() {
+    let mut plan = shared(0, 2);
+    plan.hooks = vec![hook(0, &[Trigger::Failure])];
+    let mut world = World::started(&plan);
+    initialized(&mut world, 0);
+    assert!(world.assigned.is_empty());
 }
 
 #[test]
