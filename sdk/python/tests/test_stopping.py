@@ -171,3 +171,17 @@ def test_a_request_that_comes_after_the_last_answer_is_not_missed(tmp_path: Path
         with suppress(OSError):
             host.channel.shutdown(socket.SHUT_RDWR)
         assert host.end()[0] == 0
+
+
+def test_two_requests_to_stop_a_test_do_not_disturb_the_next_one(tmp_path: Path) -> None:
+    host = Host(tmp_path)
+    body = "import time\n" + arm("self.report('going')\nself.sleep(1000)")
+    body += "    def tearDown(self):\n        time.sleep(0.2)\n"
+    host.send("run-test", {**plugin(tmp_path, body), "is_last": False}, number=2)
+    host.wait_for("message")
+    for _ in range(2):
+        host.send("interrupt", {"reason": "Ctrl-C", "request": 2})
+    assert host.answer()["result"]["outcome"] == "interrupted"
+    # Longer than the time after which a test that does not end by itself gets SIGINT.
+    later = plugin(tmp_path, arm("import time\ntime.sleep(1)"), "later.py")
+    assert host.ask("run-test", later)["result"] == {"outcome": "passed"}

@@ -60,8 +60,11 @@ class Request:
         self._answered.release()
 
     def is_answered_within(self, seconds: float) -> bool:
-        """Wait for its answer."""
-        return self._answered.acquire(timeout=seconds)
+        """Wait for its answer. Several threads may: one for each request to stop."""
+        is_answered = self._answered.acquire(timeout=seconds)
+        if is_answered:
+            self._answered.release()
+        return is_answered
 
 
 class Reader:
