@@ -21,7 +21,7 @@ use crate::run::machine::test::TestRun;
 use crate::run::machine::test::host::{HostChoice, TestRequest, assign};
 use rtf_plan::plan::{SuitePlan, TestPlan};
 
-/// So many tests are assigned at most.
+/// The largest number of tests that are assigned.
 const MOST_ASSIGNED: usize = 16;
 /// When fewer than this are left, further ones are assigned together: the host wakes once.
 const FEW_ASSIGNED: usize = 8;
@@ -42,8 +42,7 @@ pub(super) struct SharedHost<'p> {
 
 impl SharedHost<'_> {
     pub(super) fn new(suite: &SuitePlan) -> Self {
-        let has_helpers = !suite.fixtures.is_empty() || !suite.hooks.is_empty();
-        let assigns_ahead = !has_helpers && !suite.repeats();
+        let assigns_ahead = suite.fixtures.is_empty() && suite.hooks.is_empty() && !suite.repeats();
         let assigned = VecDeque::new();
         Self { assigns_ahead, assigned, begun: None, idle: None, killed: None }
     }
@@ -178,8 +177,8 @@ impl<'p> Scheduler<'p> {
     }
 }
 
-/// Whether another test may follow than the next one in the suite, because the runner judges
-/// differently than the host.
+/// Whether the test's verdict decides which one follows. The host does not know it: the runner
+/// may judge differently.
 fn decides_what_follows(plan: &TestPlan) -> bool {
     plan.settings.critical || plan.settings.retries.count > 0
 }
