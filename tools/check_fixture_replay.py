@@ -12,6 +12,7 @@ from __future__ import annotations
 import os
 import shlex
 import signal
+import statistics
 import sys
 import tempfile
 from pathlib import Path
@@ -24,8 +25,8 @@ REPLAY = "live.replay"
 VERDICTS = {"few": "passed", "none": "failed"}
 # The node computes the same numbers from the same numbers.
 VALUE_TOLERANCE = 1e-12
-# Of the times between two messages; the machine is busy.
-TIME_TOLERANCE_SECS = 0.75
+# Of the median message: one answer may be late on a busy machine. At twice the rate, it is 0.75 s.
+TIME_TOLERANCE_SECS = 0.25
 
 
 def main() -> int:
@@ -180,8 +181,9 @@ class Scene:
             difference = max(abs(one[1] - other[1]) for one, other in pairs)
             expect(f"{name} within {VALUE_TOLERANCE}", difference <= VALUE_TOLERANCE, True)
             if with_times:
-                drift = max(abs(one[0] - other[0]) for one, other in pairs)
-                print(f"{name}: largest difference in time {drift * 1000:.1f} ms")
+                drifts = [abs(one[0] - other[0]) for one, other in pairs]
+                drift = statistics.median(drifts)
+                print(f"{name}: difference in time {drift:.4f} s, at most {max(drifts):.4f} s")
                 expect(f"times of {name}", drift <= TIME_TOLERANCE_SECS, True)
 
 

@@ -17,6 +17,8 @@ work=$(mktemp -d)
 export BUILDAH_ISOLATION=chroot
 run_buildah() { buildah --root "$work/storage" --runroot "$work/run" --storage-driver vfs "$@"; }
 cleanup() {
+  # buildah does not name a full disk: it says "write on closed pipe".
+  [ $? -eq 0 ] || df -h "$work"
   run_buildah rm --all >/dev/null 2>&1 || true
   rm -rf --one-file-system "$work"
 }
