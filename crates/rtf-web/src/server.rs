@@ -325,6 +325,10 @@ fn serve(listener: TcpListener, limits: Limits, tls: Option<Tls>, app: App) -> i
             let _ = ending.wait_for(|ending| *ending).await;
             parting.graceful_shutdown(Some(PARTING));
         });
+        // The page asks for the newest run first: its journal is read while a browser starts. The first client
+        // that reads it waits for the end of that.
+        let runs = app.runs.clone();
+        tokio::task::spawn_blocking(move || runs.read_ahead());
         let service = router(app).into_make_service_with_connect_info::<Peer>();
         let listener = Listener::new(listener, limits)?;
         let mut server = HttpServer::<Peer>::from_listener(listener).handle(handle);

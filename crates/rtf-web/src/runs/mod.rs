@@ -144,6 +144,16 @@ impl Runs {
         Ok(run)
     }
 
+    /// Reads the journal of the newest run, unless this process makes one.
+    pub fn read_ahead(&self) {
+        if self.own.is_none()
+            && let Ok(run) = self.find(LATEST)
+        {
+            // An error is reported to the client that requests the run.
+            drop(run.read());
+        }
+    }
+
     /// The newest run: where the link leads, or the last name.
     fn latest(&self) -> Option<String> {
         let linked = fs::read_link(self.results.join(LATEST)).ok();
@@ -179,4 +189,26 @@ pub fn unreadable(error: io::Error) -> Problem {
 /// Whether this is a valid name of a run's directory in the results directory.
 fn is_plain(name: &str) -> bool {
     !name.is_empty() && !name.starts_with('.') && !name.contains(['/', '\\', '\0'])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_newest_run_is_read_ahead() {
+        let results = tempfile::tempdir().unwrap();
+        for name in ["1", "2"] {
+            fs::create_dir(results.path().join(name)).unwrap();
+            let line = r#"{"seq":0,"us":0,"kind":"run-finished","exit_code":0}"#;
+            fs::write(results.path().join(name).join(JOURNAL), format!("{line}\n")).unwrap();
+        }
+        for (own, expected) in [(None, vec!["2"]), (Some("2".to_owned()), vec![])] {
+            let runs = Runs::new(results.path(), own);
+            runs.read_ahead();
+            let open = runs.open.lock().unwrap();
+            let read = open.iter().filter(|run| run.index.lock().unwrap().offset() > 0);
+            assert_eq!(read.map(|run| run.name.as_str()).collect::<Vec<_>>(), expected);
+        }
+    }
 }
