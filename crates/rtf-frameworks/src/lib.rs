@@ -17,6 +17,7 @@ mod preload;
 mod supervisor;
 mod utf8_pieces;
 mod wanted;
+mod xml_report;
 mod xml_stream;
 
 pub use frameworks::foreign;

@@ -17,7 +17,8 @@ use crate::framework::{
     Framework, Launch, ListError, ListedCase, OpenChannel, ReportChannel, ReportReader, TestProgram,
 };
 use crate::listing::{self, file_name};
-use crate::xml_stream::{XmlEvent, XmlStream};
+use crate::xml_report::XmlReport;
+use crate::xml_stream::XmlEvent;
 
 /// The limit for listing the cases of a program.
 const LIST_LIMIT: Duration = Duration::from_secs(60);
@@ -135,15 +136,10 @@ fn list(test: &TestProgram, specification: Option<&str>) -> Result<Vec<ListedCas
 
 /// The cases in a list; `None` if it is none.
 pub(super) fn parse_list(text: &[u8]) -> Option<Vec<ListedCase>> {
-    let (mut stream, mut events) = (XmlStream::default(), Vec::new());
-    stream.feed(text, &mut events).ok()?;
-    let [XmlEvent::Start { name, .. }, events @ ..] = events.as_slice() else { return None };
-    if name != "MatchingTests" || !stream.is_complete() {
-        return None;
-    }
+    let events = XmlReport::parse("MatchingTests", text)?;
     let (mut cases, mut case) = (Vec::new(), ListedCase::default());
     let mut location = Location { file: String::new(), line: 0 };
-    for event in events {
+    for event in &events {
         let XmlEvent::End { name, text } = event else { continue };
         match name.as_str() {
             "Name" => text.trim().clone_into(&mut case.name),

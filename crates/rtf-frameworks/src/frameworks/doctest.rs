@@ -14,7 +14,8 @@ use crate::framework::{
     Framework, Launch, ListError, ListedCase, OpenChannel, ReportChannel, ReportReader, TestProgram,
 };
 use crate::listing::{self, file_name};
-use crate::xml_stream::{XmlEvent, XmlStream};
+use crate::xml_report::XmlReport;
+use crate::xml_stream::XmlEvent;
 
 /// The limit for listing the cases of a program.
 const LIST_LIMIT: Duration = Duration::from_secs(60);
@@ -130,12 +131,7 @@ fn list(test: &TestProgram, options: &[&str]) -> Result<Vec<ListedCase>, ListErr
 
 /// The cases in a list; `None` if it is none.
 pub(super) fn parse_list(text: &[u8]) -> Option<Vec<ListedCase>> {
-    let (mut stream, mut events) = (XmlStream::default(), Vec::new());
-    stream.feed(text, &mut events).ok()?;
-    let [XmlEvent::Start { name, .. }, events @ ..] = events.as_slice() else { return None };
-    if name != "doctest" || !stream.is_complete() {
-        return None;
-    }
+    let events = XmlReport::parse("doctest", text)?;
     let case = |event: &XmlEvent| {
         let XmlEvent::Start { name, attributes } = event else { return None };
         let suite = attributes.get("testsuite");

@@ -7,9 +7,11 @@ use rtf_model::{Comparison, ExitStatus, Location, Message, MessageKind, Outcome}
 use super::super::assertion;
 use crate::case_reporter::CaseReporter;
 use crate::framework::{CaseResult, Garbage, ReportReader};
-use crate::xml_stream::{Attributes, XmlEvent, XmlStream};
+use crate::xml_report::XmlReport;
+use crate::xml_stream::{Attributes, XmlEvent};
 
-const ROOT: &str = "TestLog";
+const LOG: &str = "TestLog";
+const REPORT: &str = "TestResult";
 
 /// Texts with which exceptions begin that are signals.
 const SIGNALS: [&str; 2] = ["signal:", "memory access violation"];
@@ -20,12 +22,11 @@ const ABORTED: &str = "Test is aborted";
 /// The reader of one process.
 #[derive(Debug)]
 pub(super) struct Reader {
-    stream: XmlStream,
+    log: XmlReport,
     case: String,
     report: PathBuf,
     /// The suites and the case of the log in which it is; the first is the program itself.
     path: Vec<String>,
-    has_begun: bool,
     /// The messages, which may be expected failures: the report contains the verdict.
     messages: Vec<Message>,
     /// Failures of global fixtures and of fixtures of suites around the case.
@@ -57,11 +58,10 @@ enum Verdict {
 impl Reader {
     pub fn new(case: String, report: PathBuf) -> Self {
         Self {
-            stream: XmlStream::default(),
+            log: XmlReport::new(LOG),
             case,
             report,
             path: Vec::new(),
-            has_begun: false,
             messages: Vec::new(),
             fixture_failures: Vec::new(),
             entry: Entry::default(),
@@ -71,11 +71,7 @@ impl Reader {
         }
     }
 
-    fn start(&mut self, name: &str, attributes: &Attributes) -> Result<(), Garbage> {
-        if !self.has_begun && name != ROOT {
-            return Err(Garbage(format!("it begins with `<{name}`, not with `<{ROOT}`")));
-        }
-        self.has_begun = true;
+    fn start(&mut self, name: &str, attributes: &Attributes) {
         match name {
             "TestSuite" | "TestCase" => {
                 self.path.push(attributes.get("name").to_owned());
@@ -96,7 +92,6 @@ impl Reader {
             }
             _ => {}
         }
-        Ok(())
     }
 
     fn end(&mut self, name: &str, text: &str) {
@@ -157,9 +152,8 @@ impl Reader {
 
     /// The verdict in the report; `None` if there is no complete report.
     fn verdict(&self) -> Option<Verdict> {
-        let text = std::fs::read(&self.report).unwrap_or_default();
-        let (mut stream, mut events) = (XmlStream::default(), Vec::new());
-        stream.feed(&text, &mut events).ok()?;
+        let text = std::fs::read(&self.report).ok()?;
+        let events = XmlReport::parse(REPORT, &text)?;
         let mut path: Vec<&str> = Vec::new();
         let mut verdict = None;
         for event in &events {
@@ -180,7 +174,7 @@ impl Reader {
                 _ => {}
             }
         }
-        verdict.filter(|_| stream.is_complete())
+        verdict
     }
 
     fn result(&self, verdict: Verdict, has_failure: bool) -> CaseResult {
@@ -202,11 +196,10 @@ impl Reader {
 
 impl ReportReader for Reader {
     fn report(&mut self, bytes: &[u8], _cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
-        let mut events = Vec::new();
-        let result = self.stream.feed(bytes, &mut events);
+        let (events, result) = self.log.feed(bytes);
         for event in events {
             match event {
-                XmlEvent::Start { name, attributes } => self.start(&name, &attributes)?,
+                XmlEvent::Start { name, attributes } => self.start(&name, &attributes),
                 XmlEvent::End { name, text } => self.end(&name, &text),
             }
         }
@@ -214,7 +207,7 @@ impl ReportReader for Reader {
     }
 
     fn finish(&mut self, end: ExitStatus, cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
-        let verdict = self.verdict().filter(|_| self.stream.is_complete());
+        let verdict = self.verdict().filter(|_| self.log.is_complete());
         let mut has_failure = !self.fixture_failures.is_empty();
         for message in std::mem::take(&mut self.fixture_failures) {
             cases.full_message(Some(&self.case), message);
@@ -222,10 +215,7 @@ impl ReportReader for Reader {
         for mut message in std::mem::take(&mut self.messages) {
             if matches!(message.kind, MessageKind::Failure | MessageKind::Error) {
                 match verdict {
-                    Some(Verdict::Passed) => {
-                        message.kind = MessageKind::Report;
-                        message.text = format!("tolerated: {}", message.text);
-                    }
+                    Some(Verdict::Passed) => assertion::tolerate(&mut message),
                     _ => has_failure = true,
                 }
             }

@@ -7,7 +7,8 @@ use super::super::sections::Sections;
 use super::{ALL_SKIPPED, tags};
 use crate::case_reporter::CaseReporter;
 use crate::framework::{CaseResult, Garbage, ListedCase, ReportReader};
-use crate::xml_stream::{Attributes, XmlEvent, XmlStream};
+use crate::xml_report::XmlReport;
+use crate::xml_stream::{Attributes, XmlEvent};
 
 const ROOT: &str = "Catch2TestRun";
 
@@ -17,14 +18,13 @@ const UNKNOWN: &str = "{Unknown expression after the reported line}";
 /// The reader of one process.
 #[derive(Debug)]
 pub(super) struct Reader {
-    stream: XmlStream,
+    report: XmlReport,
     running: RunningCases,
     case: Option<RunningCase>,
     /// Whether the reported case is another one of the same name.
     is_ignored: bool,
     check: Check,
     benchmark: String,
-    has_begun: bool,
     unskipped: usize,
 }
 
@@ -63,27 +63,17 @@ struct Check {
 impl Reader {
     pub fn new(cases: &[ListedCase]) -> Self {
         Self {
-            stream: XmlStream::default(),
+            report: XmlReport::new(ROOT),
             running: RunningCases::new(cases),
             case: None,
             is_ignored: false,
             check: Check::default(),
             benchmark: String::new(),
-            has_begun: false,
             unskipped: 0,
         }
     }
 
-    fn start(
-        &mut self,
-        name: &str,
-        attributes: &Attributes,
-        cases: &mut CaseReporter<'_>,
-    ) -> Result<(), Garbage> {
-        if !self.has_begun && name != ROOT {
-            return Err(Garbage(format!("it begins with `<{name}`, not with `<{ROOT}`")));
-        }
-        self.has_begun = true;
+    fn start(&mut self, name: &str, attributes: &Attributes, cases: &mut CaseReporter<'_>) {
         let location = assertion::location(attributes, "filename");
         match name {
             "TestCase" => self.start_case(attributes, location, cases),
@@ -115,7 +105,6 @@ impl Reader {
             }
             _ => {}
         }
-        Ok(())
     }
 
     fn end(&mut self, name: &str, text: &str, cases: &mut CaseReporter<'_>) {
@@ -263,8 +252,7 @@ impl Reader {
         };
         if matches!(message.kind, MessageKind::Failure | MessageKind::Error) {
             if case.may_fail || case.should_fail {
-                message.kind = MessageKind::Report;
-                message.text = format!("tolerated: {}", message.text);
+                assertion::tolerate(&mut message);
             } else {
                 case.has_failure = true;
             }
@@ -286,11 +274,10 @@ impl Reader {
 
 impl ReportReader for Reader {
     fn report(&mut self, bytes: &[u8], cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
-        let mut events = Vec::new();
-        let result = self.stream.feed(bytes, &mut events);
+        let (events, result) = self.report.feed(bytes);
         for event in events {
             match event {
-                XmlEvent::Start { name, attributes } => self.start(&name, &attributes, cases)?,
+                XmlEvent::Start { name, attributes } => self.start(&name, &attributes, cases),
                 XmlEvent::End { name, text } => self.end(&name, &text, cases),
             }
         }
@@ -301,7 +288,7 @@ impl ReportReader for Reader {
         if let Some(case) = &mut self.case {
             case.sections.close_left(cases);
         } else if let ExitStatus::Code(code) = end {
-            if self.has_begun && !self.stream.is_complete() {
+            if self.report.is_incomplete() {
                 cases.test_error("the report of the program is incomplete".to_owned());
             }
             if code == ALL_SKIPPED && self.unskipped > 0 && !cases.has_problem() {

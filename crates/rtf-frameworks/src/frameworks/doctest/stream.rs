@@ -6,7 +6,8 @@ use super::super::assertion::{self, RunningCases};
 use super::super::sections::Sections;
 use crate::case_reporter::CaseReporter;
 use crate::framework::{CaseResult, Garbage, ListedCase, ReportReader};
-use crate::xml_stream::{Attributes, XmlEvent, XmlStream};
+use crate::xml_report::XmlReport;
+use crate::xml_stream::{Attributes, XmlEvent};
 
 const ROOT: &str = "doctest";
 
@@ -16,13 +17,12 @@ pub(super) const UNNAMED: &str = "(no name)";
 /// The reader of one process.
 #[derive(Debug)]
 pub(super) struct Reader {
-    stream: XmlStream,
+    report: XmlReport,
     running: RunningCases,
     case: Option<RunningCase>,
     /// Whether the reported case is another one of the same name.
     is_ignored: bool,
     check: Check,
-    has_begun: bool,
 }
 
 /// The running test case.
@@ -66,25 +66,15 @@ pub(super) fn case_name(attributes: &Attributes) -> String {
 impl Reader {
     pub fn new(cases: &[ListedCase]) -> Self {
         Self {
-            stream: XmlStream::default(),
+            report: XmlReport::new(ROOT),
             running: RunningCases::new(cases),
             case: None,
             is_ignored: false,
             check: Check::default(),
-            has_begun: false,
         }
     }
 
-    fn start(
-        &mut self,
-        name: &str,
-        attributes: &Attributes,
-        cases: &mut CaseReporter<'_>,
-    ) -> Result<(), Garbage> {
-        if !self.has_begun && name != ROOT {
-            return Err(Garbage(format!("it begins with `<{name}`, not with `<{ROOT}`")));
-        }
-        self.has_begun = true;
+    fn start(&mut self, name: &str, attributes: &Attributes, cases: &mut CaseReporter<'_>) {
         let location = assertion::location(attributes, "filename");
         match name {
             // Other cases are listed as skipped.
@@ -114,7 +104,6 @@ impl Reader {
             }
             _ => {}
         }
-        Ok(())
     }
 
     fn end(&mut self, name: &str, text: &str, cases: &mut CaseReporter<'_>) {
@@ -254,7 +243,7 @@ impl Reader {
             return cases.full_message(Some(case.sections.path()), message);
         }
         if case.may_fail || case.should_fail {
-            tolerate(&mut message);
+            assertion::tolerate(&mut message);
         } else if case.sections.is_inside() {
             case.has_failure = true;
         } else {
@@ -271,7 +260,7 @@ impl RunningCase {
     fn report_held(&mut self, cases: &mut CaseReporter<'_>) {
         for mut message in std::mem::take(&mut self.held) {
             if self.is_success {
-                tolerate(&mut message);
+                assertion::tolerate(&mut message);
             } else {
                 self.has_failure |= self.expected_failures.is_empty();
                 if !self.expected_failures.is_empty() {
@@ -285,11 +274,10 @@ impl RunningCase {
 
 impl ReportReader for Reader {
     fn report(&mut self, bytes: &[u8], cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
-        let mut events = Vec::new();
-        let result = self.stream.feed(bytes, &mut events);
+        let (events, result) = self.report.feed(bytes);
         for event in events {
             match event {
-                XmlEvent::Start { name, attributes } => self.start(&name, &attributes, cases)?,
+                XmlEvent::Start { name, attributes } => self.start(&name, &attributes, cases),
                 XmlEvent::End { name, text } => self.end(&name, &text, cases),
             }
         }
@@ -302,17 +290,11 @@ impl ReportReader for Reader {
             case.is_success = false;
             case.expected_failures.clear();
             case.report_held(cases);
-        } else if self.has_begun && !self.stream.is_complete() && matches!(end, ExitStatus::Code(_))
-        {
+        } else if self.report.is_incomplete() && matches!(end, ExitStatus::Code(_)) {
             cases.test_error("the report of the program is incomplete".to_owned());
         }
         Ok(())
     }
-}
-
-fn tolerate(message: &mut Message) {
-    message.kind = MessageKind::Report;
-    message.text = format!("tolerated: {}", message.text);
 }
 
 #[cfg(test)]
