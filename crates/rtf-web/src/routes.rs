@@ -17,7 +17,7 @@ use crate::access::{self, Access, AccessLog, Hosts, Rules, Secret};
 use crate::app::App;
 use crate::connections::{Limits, Peer};
 use crate::runs::Runs;
-use crate::server::{ServeError, Service};
+use crate::service::{ServeError, Service};
 use crate::{api, legacy, metrics, page};
 
 /// The state of all handlers, and what changes it.
@@ -107,7 +107,7 @@ impl Routes {
 
 /// All routes, behind the check of access.
 pub fn router(app: App) -> Router {
-    let guard = middleware::from_fn_with_state(app.clone(), access::guard);
+    let guard = middleware::from_fn_with_state(app.access.clone(), access::guard);
     api::router()
         .route("/status", get(legacy::status))
         .route("/update", get(legacy::update))

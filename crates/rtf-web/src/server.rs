@@ -2,7 +2,6 @@
 
 use std::io;
 use std::net::{IpAddr, SocketAddr, TcpListener};
-use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -10,18 +9,15 @@ use std::time::{Duration, Instant};
 use axum_server::tls_rustls::RustlsAcceptor;
 use axum_server::{Handle, Server as HttpServer};
 use hyper_util::rt::TokioTimer;
-use rtf_report::console::TestCommands;
 use tokio::sync::watch;
 
-use crate::access::{self, Hosts, Rules, Secret, TokenError, WrongToken};
+use crate::access::{self, Hosts, Rules, Secret};
 use crate::app::App;
-use crate::campaign_report::CampaignSource;
-use crate::capabilities::Capabilities;
 use crate::connections::{Limits, Listener, Peer};
-use crate::history_source::HistorySource;
 use crate::journal_notifier::JournalNotifier;
 use crate::routes::{Prepared, Routes, router};
-use crate::tls::{self, Tls, TlsError};
+use crate::service::{ServeError, Service, Settings};
+use crate::tls::{self, Tls};
 
 /// How many ports are tried when the first one is taken.
 const PORTS: u16 = 50;
@@ -31,84 +27,6 @@ const PARTING: Duration = Duration::from_millis(500);
 const HTTP2_STREAMS: u32 = 32;
 /// How nice this server's threads are to those that run tests.
 const NICE: i32 = 10;
-
-/// How to serve.
-#[derive(Clone, Debug)]
-pub struct Settings {
-    /// Where to listen. Port 0 is any that is free.
-    pub address: SocketAddr,
-    /// Whether clients on other machines may connect.
-    pub allow_remote: bool,
-    /// A file with the token; a new one is made without it.
-    pub token_file: Option<PathBuf>,
-    /// A certificate and its key.
-    pub tls: Option<(PathBuf, PathBuf)>,
-    /// Other names under which this server is reached.
-    pub hosts: Vec<String>,
-    /// How many connections there may be.
-    pub limits: Limits,
-}
-
-/// Why nothing is served.
-#[derive(Debug, thiserror::Error)]
-pub enum ServeError {
-    /// The address is not of this machine alone.
-    #[error("`{0}` can be reached from beyond this machine")]
-    Remote(IpAddr),
-    /// The address cannot be listened on.
-    #[error("cannot listen on `{address}`")]
-    Listen {
-        /// Where.
-        address: SocketAddr,
-        /// Why.
-        #[source]
-        source: io::Error,
-    },
-    /// There is no token.
-    #[error(transparent)]
-    Token(#[from] TokenError),
-    /// There is no TLS.
-    #[error(transparent)]
-    Tls(#[from] TlsError),
-    /// The thread cannot be started.
-    #[error("cannot start the server")]
-    Start(#[source] io::Error),
-}
-
-impl ServeError {
-    /// How to fix it.
-    #[must_use]
-    pub fn hint(&self) -> Option<&'static str> {
-        match self {
-            Self::Remote(_) => Some(
-                "`--web-allow-remote` allows that: reading then needs the token, and TLS is used",
-            ),
-            Self::Token(TokenError::Open { .. }) => {
-                Some("`chmod 600` it: who has the token controls the run")
-            }
-            Self::Listen { .. } => Some("choose another address with `--web=ADDR:PORT`"),
-            _ => None,
-        }
-    }
-}
-
-/// What is served.
-pub struct Service<'a> {
-    /// The results directory.
-    pub results: &'a Path,
-    /// The results of many runs.
-    pub history: Arc<dyn HistorySource>,
-    /// The campaigns of the results directory.
-    pub campaigns: Arc<dyn CampaignSource>,
-    /// Whether `/metrics` shows it.
-    pub metrics: bool,
-    /// What this server can do in addition to showing them.
-    pub role: Capabilities,
-    /// Creates the functions that return the commands for rerunning and replaying a test.
-    pub commands: fn() -> TestCommands,
-    /// Reports a wrong token.
-    pub wrong_token: Box<dyn Fn(WrongToken) + Send>,
-}
 
 /// A server that has its address.
 #[derive(Debug)]

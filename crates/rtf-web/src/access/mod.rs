@@ -9,6 +9,7 @@ mod secret;
 
 use std::io;
 use std::net::IpAddr;
+use std::sync::Arc;
 use std::sync::mpsc::{SyncSender, sync_channel};
 
 use axum::body::Body;
@@ -20,8 +21,7 @@ use axum::response::{IntoResponse, Response};
 pub use host_header::{Hosts, machine};
 pub use secret::{Secret, TokenError};
 
-use crate::api::ROOT;
-use crate::app::App;
+use crate::address::API;
 use crate::connections::Peer;
 use crate::problem::Problem;
 
@@ -190,7 +190,7 @@ impl Access {
         if !request.method().is_safe() {
             self.check_change(request, &host, who)?;
         }
-        let is_open = path == ROOT || is_session(path) || !is_data(path);
+        let is_open = path == API || is_session(path) || !is_data(path);
         if self.remote && who == Who::Nobody && !is_open {
             return Err(unauthorised("reading from beyond this machine needs the token"));
         }
@@ -248,7 +248,7 @@ fn unauthorised(detail: &str) -> Problem {
 }
 
 fn is_session(path: &str) -> bool {
-    path.strip_prefix(ROOT) == Some("/session")
+    path.strip_prefix(API) == Some("/session")
 }
 
 /// Methods that some route has; the others are refused by all.
@@ -262,7 +262,7 @@ fn is_known(method: &Method) -> bool {
 fn is_data(path: &str) -> bool {
     let below = |root: &str| path.strip_prefix(root).filter(|rest| !is_name(rest));
     let in_api = below("/api").is_some();
-    let is_description = path.strip_prefix(ROOT) == Some("/openapi.json");
+    let is_description = path.strip_prefix(API) == Some("/openapi.json");
     let is_viewer = path == "/api/docs";
     in_api && !is_description && !is_viewer
         || below("/status").is_some()
@@ -277,12 +277,12 @@ fn is_name(rest: &str) -> bool {
 
 /// Lets through what is allowed.
 pub async fn guard(
-    State(app): State<App>,
+    State(access): State<Arc<Access>>,
     ConnectInfo(Peer(client)): ConnectInfo<Peer>,
     mut request: Request<Body>,
     next: Next,
 ) -> Response {
-    match app.access.check(client.ip(), &mut request).await {
+    match access.check(client.ip(), &mut request).await {
         Ok(()) => next.run(request).await,
         Err(problem) => problem.into_response(),
     }

@@ -9,9 +9,9 @@ use super::details::{JsonResult, Path3};
 use super::plan::entry;
 use super::problems::Problems;
 use super::query::{At, QueryParams, limit, words};
-use super::types::{Case, Cases};
 use crate::app::App;
 use crate::problem::Problem;
+use crate::views::{Case, Cases};
 
 /// Default number of cases per page.
 const PAGE: usize = 100;

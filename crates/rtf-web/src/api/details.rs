@@ -9,14 +9,15 @@ use utoipa::IntoParams;
 
 use super::problems::Problems;
 use super::query::{At, Number, PageQuery, QueryParams, words};
-use super::types::{
-    Attached, Attachments, Measured, Measurements, Messages, OutputPage, Printed, Said, Stack,
-    Stacks,
-};
+use crate::address;
 use crate::app::{App, JsonText};
 use crate::index::LineReader;
 use crate::problem::Problem;
 use crate::runs::Run;
+use crate::views::{
+    Attached, Attachments, Measured, Measurements, Messages, OutputPage, Printed, Said, Stack,
+    Stacks,
+};
 
 /// Maximum text per page in bytes, apart from its last entry.
 const PAGE_BYTES: usize = 1 << 20;
@@ -219,7 +220,7 @@ pub async fn attachments(
     app.with_run(run, move |run| {
         let (attachments, next) = part.read(run, |event| {
             let EventKind::Attached { attachment, .. } = event.kind else { return None };
-            let url = super::files::url(&run.name, &attachment.path);
+            let url = address::file(&run.name, &attachment.path);
             Some(Attached { seq: event.seq, at: event.at.0, attachment, url })
         })?;
         JsonText::of(&Attachments { attachments, next })

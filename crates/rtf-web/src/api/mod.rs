@@ -5,7 +5,7 @@ mod cases;
 mod control;
 mod details;
 mod events;
-pub mod files;
+mod files;
 mod history;
 mod logs;
 mod plan;
@@ -16,7 +16,6 @@ mod runs;
 mod series;
 mod session;
 mod tests;
-mod types;
 
 use axum::Router;
 use axum::response::IntoResponse;
@@ -24,16 +23,10 @@ use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-pub use types::{
-    Asked, Attached, Cases, Measured, Printed, Questions, RunInfo, Said, Signal, SignalList,
-    Snapshot, Stack, TestDetail, model,
-};
-
+use crate::address::API;
 use crate::app::App;
 use crate::problem::Problem;
-
-/// Where the API is.
-pub const ROOT: &str = "/api/v1";
+use crate::views::model;
 
 /// The description as it is kept in `schemas/`: with the model's schemas in it.
 const DESCRIPTION: &str = include_str!("../../../../schemas/openapi.json");
@@ -113,7 +106,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(control::skip_suite))
         .routes(routes!(questions::answer))
         .routes(routes!(control::rerun));
-    OpenApiRouter::with_openapi(ApiDescription::openapi()).nest(ROOT, api)
+    OpenApiRouter::with_openapi(ApiDescription::openapi()).nest(API, api)
 }
 
 /// The routes.
@@ -124,8 +117,8 @@ pub fn router() -> Router<App> {
         ([(axum::http::header::CONTENT_TYPE, "application/json")], DESCRIPTION).into_response()
     };
     router
-        .route(&format!("{ROOT}/openapi.json"), axum::routing::get(description))
-        .route(&format!("{ROOT}/{{*unknown}}"), axum::routing::any(unknown))
+        .route(&format!("{API}/openapi.json"), axum::routing::get(description))
+        .route(&format!("{API}/{{*unknown}}"), axum::routing::any(unknown))
 }
 
 /// The description made from the code, with empty schemas for [`model::NAMES`].

@@ -4,9 +4,9 @@ use axum::extract::State;
 
 use super::problems::Problems;
 use super::query::At;
-use super::types::{Fixture, Fixtures, Hook, Hooks, Suite, Suites};
 use crate::app::{App, JsonText};
 use crate::problem::Problem;
+use crate::views::{Fixture, Fixtures, Hook, Hooks, Suite, Suites};
 
 type JsonResult = Result<JsonText, Problem>;
 

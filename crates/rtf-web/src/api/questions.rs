@@ -13,13 +13,14 @@ use super::plan::entry;
 use super::problems::{ChangeProblems, Problems};
 use super::query::At;
 use super::session::rejected;
-use super::types::Questions;
 use crate::access::Who;
+use crate::address;
 use crate::app::{App, JsonText};
 use crate::capabilities::AnswerRequest;
 use crate::connections::Peer;
 use crate::index::Index;
 use crate::problem::Problem;
+use crate::views::Questions;
 
 /// What an attempt of a test asked, and the answers.
 #[utoipa::path(get, path = "/runs/{run}/tests/{test}/attempts/{number}/questions", tag = "details",
@@ -30,7 +31,7 @@ pub async fn questions(State(app): State<App>, At((run, test, number)): Path3) -
         let source = Source::Test(TestId(test));
         let mut questions = Questions::default();
         DetailQuery::questions_of(source, number).each(run, |event| {
-            questions.take(event, |path| Some(super::files::url(&run.name, path)));
+            questions.take(event, |path| Some(address::file(&run.name, path)));
         })?;
         JsonText::of(&questions)
     })

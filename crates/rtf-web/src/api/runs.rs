@@ -6,10 +6,10 @@ use utoipa::IntoParams;
 
 use super::problems::Problems;
 use super::query::{At, QueryParams, limit};
-use super::types::{RunInfo, RunList, Snapshot};
 use crate::app::{App, JsonText, blocking};
 use crate::problem::Problem;
 use crate::runs::{Listing, RunFilter, RunResult};
+use crate::views::{RunInfo, RunList, Snapshot};
 
 /// Default number of runs per page.
 const PAGE: usize = 50;

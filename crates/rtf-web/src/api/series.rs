@@ -9,9 +9,9 @@ use utoipa::IntoParams;
 use super::details::{DetailQuery, JsonResult, Path3};
 use super::problems::Problems;
 use super::query::{At, PageQuery, QueryParams};
-use super::types::{SignalList, Signals};
 use crate::app::{App, JsonText};
 use crate::problem::Problem;
+use crate::views::{SignalList, Signals};
 
 /// Which part of the curves. The numbers are always those of the whole signal.
 #[derive(Clone, Copy, Debug, Deserialize, IntoParams)]

@@ -8,9 +8,9 @@ use utoipa::IntoParams;
 use super::plan::entry;
 use super::problems::Problems;
 use super::query::{At, QueryParams, limit, words};
-use super::types::{Test, TestDetail, TestPage, TestState};
 use crate::app::{App, JsonText};
 use crate::problem::Problem;
+use crate::views::{Test, TestDetail, TestPage, TestState};
 
 /// Default number of tests per page.
 const PAGE: usize = 100;

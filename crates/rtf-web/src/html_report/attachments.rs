@@ -9,7 +9,8 @@ use base64::engine::general_purpose::STANDARD;
 use rtf_model::Attachment;
 use rtf_report::output_file;
 
-use crate::api::files::{ServedType, encoded, is_attachment};
+use crate::address::encoded;
+use crate::attached_file::{ServedType, is_attachment};
 use crate::index::AttachmentInfo;
 use crate::regular_file;
 

@@ -10,8 +10,8 @@ use rtf_report::journal::{EventHeader, parse_event};
 use super::attachments::AttachmentFiles;
 use super::chunks::Chunks;
 use super::details::DetailsBuilder;
-use crate::api::Cases;
 use crate::index::LineReader;
+use crate::views::Cases;
 
 /// The attempts that have started, and not yet finished.
 pub struct Collector<'c, 'w> {

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::attachments::AttachmentFiles;
 use super::excerpt::{Entry, Excerpt, Limits};
-use crate::api::{
+use crate::views::{
     Asked, Attached, Cases, Measured, Printed, Questions, Said, Signal, SignalList, Stack,
 };
 

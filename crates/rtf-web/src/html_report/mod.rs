@@ -18,9 +18,9 @@ use std::path::Path;
 use rtf_report::console::TestCommands;
 use serde::Serialize;
 
-use crate::api::{Snapshot, TestDetail};
 use crate::campaign_report::CampaignReport;
 use crate::index::Index;
+use crate::views::{Snapshot, TestDetail};
 use attachments::AttachmentFiles;
 use chunks::Chunks;
 use collector::Collector;

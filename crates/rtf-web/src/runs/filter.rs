@@ -3,8 +3,8 @@
 use serde::Deserialize;
 use utoipa::ToSchema;
 
-use crate::api::RunInfo;
 use crate::index::State;
+use crate::views::RunInfo;
 
 /// The result of a run, or that it is running.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, ToSchema)]

@@ -7,8 +7,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 
 use super::{Run, RunFilter, Runs};
-use crate::api::RunInfo;
 use crate::problem::Problem;
+use crate::views::RunInfo;
 
 /// How long a response may be delayed by reading journals for the first time.
 const BUDGET: Duration = Duration::from_millis(500);

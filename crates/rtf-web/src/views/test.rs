@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::{Asked, CaseCounts, Significance, model};
-use crate::api::files;
+use crate::address;
 
 /// The state of a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -252,7 +252,7 @@ pub struct PhaseAt {
 /// The questions of an attempt that wait for an answer.
 fn open_questions(record: &Record, attempt: &AttemptRecord) -> Vec<Asked> {
     let run = record.run.as_ref().map_or("", |run| &run.run);
-    let url = |path: &str| files::url(run, path);
+    let url = |path: &str| address::file(run, path);
     attempt.questions.iter().filter(|it| it.is_open()).map(|it| Asked::open(it, url)).collect()
 }
 
