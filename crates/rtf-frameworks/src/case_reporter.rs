@@ -8,9 +8,9 @@ use std::time::Instant;
 
 use rtf_host::Session;
 use rtf_model::protocol::{CaseSelector, Notification};
-use rtf_model::{CaseId, CaseStart, Location, Outcome, Parameter};
+use rtf_model::{CaseId, CaseStart, Outcome};
 
-use crate::framework::{CaseResult, Selection};
+use crate::case::{CaseResult, Selection, StartedCase};
 use crate::wanted::WantedCases;
 
 /// How many names a message lists.
@@ -18,19 +18,6 @@ const NAMES_SHOWN: usize = 5;
 
 /// Maximum number of planned names in a notification, whose size is limited.
 const NAMES_IN_LINE: usize = 4096;
-
-/// The start of a case, as a framework reports it.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct StartedCase {
-    /// Its name.
-    pub name: String,
-    /// Its parameters.
-    pub parameters: Vec<Parameter>,
-    /// Its tags.
-    pub tags: Vec<String>,
-    /// Its location.
-    pub location: Option<Location>,
-}
 
 /// An open case.
 #[derive(Debug)]

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use rtf_host::CheckedFile;
 
-use crate::framework::{Framework, ListedCase, TestProgram};
+use crate::case::ListedCase;
+use crate::framework::{Framework, TestProgram};
 
 /// The result for one file, with its cases.
 #[derive(serde::Serialize)]

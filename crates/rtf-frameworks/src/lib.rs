@@ -6,6 +6,7 @@
 //! limits, and compares the selected cases with the reported ones. `spec/frameworks.md`
 //! documents both.
 
+mod case;
 mod case_reporter;
 mod check;
 mod elf;

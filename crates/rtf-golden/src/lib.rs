@@ -5,6 +5,7 @@
 //! clock; depends on no other crate of the project.
 
 mod picture;
+mod picture_error;
 mod pixels;
 mod reference;
 mod similarity;
@@ -13,7 +14,8 @@ mod time;
 mod trajectory;
 mod warp;
 
-pub use picture::{MAX_PICTURE_BYTES, Picture, PictureError};
+pub use picture::{MAX_PICTURE_BYTES, Picture};
+pub use picture_error::PictureError;
 pub use reference::{MEDIA_TYPE, ParseError, Reference};
 pub use similarity::PictureDifference;
 pub use thin::{Thinned, thin};

@@ -8,7 +8,7 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-use crate::picture::PictureError;
+use crate::picture_error::PictureError;
 
 /// How files begin.
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";

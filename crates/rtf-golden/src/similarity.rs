@@ -3,7 +3,8 @@
 
 use std::collections::VecDeque;
 
-use crate::picture::{Picture, PictureError};
+use crate::picture::Picture;
+use crate::picture_error::PictureError;
 use crate::pixels::Pixels;
 
 /// Pixels between the middle and the border of a window.

@@ -2,7 +2,7 @@
 //! `spec/history.md` is its specification.
 //!
 //! - [`entry`]: the record of a run → the rows to store. Pure.
-//! - [`store`]: the database. All SQL is in [`store::sql`].
+//! - [`store`]: the database. All SQL is in [`store::schema`] and [`store::sql`].
 //! - [`answers`]: runs, history of a test, flaky and slow tests, trends, comparisons. Typed
 //!   values that serialise to the JSON of `rtf history`; this crate prints nothing.
 //! - [`statistics`]: statistics of series. Pure.

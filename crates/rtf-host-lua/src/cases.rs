@@ -5,7 +5,8 @@ use rtf_host::CaseEnd;
 use rtf_model::Parameter;
 use rtf_model::protocol::Plugin;
 
-use crate::sdk::{add, location};
+use crate::arguments::location;
+use crate::session_function::add;
 
 /// Adds `case_begin`, `case_end`, `plan_cases` and `skip` to the host's functions.
 pub(crate) fn add_functions(lua: &Lua, host: &Table) -> mlua::Result<()> {

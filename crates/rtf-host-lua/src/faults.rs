@@ -4,7 +4,7 @@ use mlua::{Lua, LuaString, Table};
 use rtf_host::{FaultRequest, Session};
 use rtf_model::protocol::Plugin;
 
-use crate::sdk::location;
+use crate::arguments::location;
 
 /// `verb, name, file, line`
 type FaultArgs = (String, LuaString, Option<LuaString>, Option<u32>);

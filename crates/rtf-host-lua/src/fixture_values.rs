@@ -5,7 +5,7 @@ use mlua::{Lua, LuaSerdeExt, LuaString, Table, Value as LuaValue};
 use rtf_model::protocol::Plugin;
 use serde_json::{Map, Number, Value};
 
-use crate::sdk::add;
+use crate::session_function::add;
 
 /// A table that contains itself has no end. The runner reads at most 127 levels.
 const MAX_DEPTH: usize = 100;

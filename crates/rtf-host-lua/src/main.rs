@@ -11,6 +11,7 @@
 #![no_main]
 #![expect(unsafe_code, reason = "the program's entry point is C's")]
 
+mod arguments;
 mod cases;
 mod check;
 mod chunk;
@@ -21,6 +22,7 @@ mod host;
 mod interruption;
 mod sdk;
 mod search_path;
+mod session_function;
 mod source;
 mod state;
 

@@ -3,27 +3,22 @@
 
 use std::ffi::CStr;
 use std::path::PathBuf;
-use std::time::Duration;
 
-use mlua::{Function, IntoLuaMulti, Lua, LuaString, Table, Value};
-use rtf_host::{Inquiry, Sample, Session};
+use mlua::{Function, Lua, LuaString, Table, Value};
+use rtf_host::Session;
 use rtf_model::protocol::{MonitorDeclaration, Plugin};
-use rtf_model::{
-    Alignment, Attachment, Comparison, Location, Measurement, Message, MessageKind, PictureCheck,
-    TrajectoryCheck,
-};
+use rtf_model::{Attachment, PictureCheck};
 
+use crate::arguments::{Asked, MeasureArgs, Reported, Sampled, Trajectory, duration, location};
 use crate::cases;
 use crate::chunk::SdkChunk;
 use crate::clock::Clock;
 use crate::faults;
 use crate::fixture_values;
+use crate::session_function::add;
 
 /// The name in Lua's registry of the value that unwinds a step.
 pub(crate) const STOP: &CStr = c"rtf.stop";
-
-/// No sleep is longer: more seconds than any clock can add.
-const LONGEST: Duration = Duration::from_secs(1 << 40);
 
 // A crash must not lose printed lines with the buffer.
 static LINES: SdkChunk = SdkChunk::new("io.stdout:setvbuf('line')");
@@ -141,24 +136,6 @@ fn functions(lua: &Lua) -> mlua::Result<Table> {
     Ok(host)
 }
 
-/// Adds a function of the session.
-pub(crate) fn add<A, R>(
-    lua: &Lua,
-    host: &Table,
-    name: &str,
-    call: impl Fn(&Session, A) -> mlua::Result<R> + mlua::MaybeSend + 'static,
-) -> mlua::Result<()>
-where
-    A: mlua::FromLuaMulti,
-    R: IntoLuaMulti,
-{
-    let function = lua.create_function(move |lua, args| {
-        let session = lua.app_data_ref::<Session>().map(|session| session.clone());
-        call(&session.ok_or_else(|| mlua::Error::runtime("there is no runner"))?, args)
-    })?;
-    host.set(name, function)
-}
-
 /// The absolute path of an existing file.
 fn existing(path: &LuaString) -> Result<PathBuf, String> {
     let path = path.to_string_lossy();
@@ -188,148 +165,6 @@ fn attach(
         omitted: false,
     });
     attached.err().map(|error| format!("`{}` cannot be attached: {error}", full.display()))
-}
-
-/// `kind, text, file, line, comparison, critical`
-struct Reported(Message);
-
-impl mlua::FromLuaMulti for Reported {
-    fn from_lua_multi(values: mlua::MultiValue, lua: &Lua) -> mlua::Result<Self> {
-        type Arguments =
-            (String, LuaString, Option<LuaString>, Option<u32>, Option<Table>, Option<bool>);
-        let (kind, text, file, line, comparison, critical) =
-            Arguments::from_lua_multi(values, lua)?;
-        let kind = match kind.as_str() {
-            "report" => MessageKind::Report,
-            "check" => MessageKind::Check,
-            "failure" => MessageKind::Failure,
-            _ => MessageKind::Error,
-        };
-        Ok(Self(Message {
-            kind,
-            text: text.to_string_lossy(),
-            location: location(file.as_ref(), line),
-            comparison: comparison.map(|numbers| comparison_of(&numbers)).transpose()?,
-            critical: critical.unwrap_or(false),
-            case: None,
-            interval: None,
-        }))
-    }
-}
-
-/// `text, choices, timeout, default, picture, file, line`
-struct Asked(Inquiry);
-
-impl mlua::FromLuaMulti for Asked {
-    fn from_lua_multi(values: mlua::MultiValue, lua: &Lua) -> mlua::Result<Self> {
-        type Arguments = (
-            LuaString,
-            Vec<LuaString>,
-            f64,
-            Option<LuaString>,
-            Option<LuaString>,
-            Option<LuaString>,
-            Option<u32>,
-        );
-        let (text, choices, timeout, default, picture, file, line) =
-            Arguments::from_lua_multi(values, lua)?;
-        Ok(Self(Inquiry {
-            text: text.to_string_lossy(),
-            choices: choices.iter().map(LuaString::to_string_lossy).collect(),
-            default: default.as_ref().map(LuaString::to_string_lossy),
-            timeout: duration(timeout),
-            picture: picture.as_ref().map(LuaString::to_string_lossy),
-            location: location(file.as_ref(), line),
-        }))
-    }
-}
-
-fn duration(seconds: f64) -> Duration {
-    Duration::try_from_secs_f64(seconds.max(0.0)).unwrap_or(LONGEST).min(LONGEST)
-}
-
-/// `name, value, unit, low, high, file, line`
-struct MeasureArgs(Measurement);
-
-impl mlua::FromLuaMulti for MeasureArgs {
-    fn from_lua_multi(values: mlua::MultiValue, lua: &Lua) -> mlua::Result<Self> {
-        type Arguments =
-            (LuaString, f64, LuaString, Option<f64>, Option<f64>, Option<LuaString>, Option<u32>);
-        let (name, value, unit, low, high, file, line) = Arguments::from_lua_multi(values, lua)?;
-        Ok(Self(Measurement {
-            learned: false,
-            name: name.to_string_lossy(),
-            value: finite(value),
-            unit: unit.to_string_lossy(),
-            low: low.and_then(finite),
-            high: high.and_then(finite),
-            location: location(file.as_ref(), line),
-            case: None,
-        }))
-    }
-}
-
-/// `name, value, unit, low, high, time, file, line`
-struct Sampled {
-    name: LuaString,
-    numbers: (f64, Option<f64>, Option<f64>, Option<f64>),
-    unit: LuaString,
-    place: (Option<LuaString>, Option<u32>),
-}
-
-impl mlua::FromLuaMulti for Sampled {
-    fn from_lua_multi(values: mlua::MultiValue, lua: &Lua) -> mlua::Result<Self> {
-        type Arguments = (
-            LuaString,
-            f64,
-            LuaString,
-            Option<f64>,
-            Option<f64>,
-            Option<f64>,
-            Option<LuaString>,
-            Option<u32>,
-        );
-        let (name, value, unit, low, high, time, file, line) =
-            Arguments::from_lua_multi(values, lua)?;
-        Ok(Self { name, numbers: (value, low, high, time), unit, place: (file, line) })
-    }
-}
-
-impl Sampled {
-    fn send(&self, session: &Session) -> bool {
-        let (value, low, high, time) = self.numbers;
-        let file = self.place.0.as_ref().map(LuaString::to_string_lossy);
-        session.sample(&Sample {
-            name: &self.name.to_string_lossy(),
-            value,
-            unit: &self.unit.to_string_lossy(),
-            low: low.and_then(finite),
-            high: high.and_then(finite),
-            time,
-            place: file.as_deref().map(|file| (file, self.place.1.unwrap_or(0))),
-        })
-    }
-}
-
-/// A check of a trajectory: name, reference, tolerance, alignment, band, place.
-struct Trajectory(TrajectoryCheck);
-
-impl mlua::FromLuaMulti for Trajectory {
-    fn from_lua_multi(values: mlua::MultiValue, lua: &Lua) -> mlua::Result<Self> {
-        type Arguments =
-            (LuaString, LuaString, f64, bool, Option<f64>, Option<LuaString>, Option<u32>);
-        let (name, reference, tolerance, warps, band, file, line) =
-            Arguments::from_lua_multi(values, lua)?;
-        Ok(Self(TrajectoryCheck {
-            name: name.to_string_lossy(),
-            reference: reference.to_string_lossy(),
-            tolerance,
-            align: if warps { Alignment::Dtw } else { Alignment::Time },
-            band,
-            location: location(file.as_ref(), line),
-            case: None,
-        }))
-    }
 }
 
 /// `name, picture, reference, tolerance, file, line`
@@ -368,27 +203,6 @@ fn monitor(
         }
         Err(problem) => Some(problem),
     }
-}
-
-fn comparison_of(numbers: &Table) -> mlua::Result<Comparison> {
-    let all = |name| -> mlua::Result<Vec<Option<f64>>> {
-        Ok(numbers.get::<Vec<f64>>(name)?.into_iter().map(finite).collect())
-    };
-    Ok(Comparison {
-        expected: all("expected")?,
-        got: all("got")?,
-        tolerance: numbers.get("tolerance")?,
-        worst: numbers.get("worst")?,
-    })
-}
-
-pub(crate) fn location(file: Option<&LuaString>, line: Option<u32>) -> Option<Location> {
-    Some(Location { file: file?.to_string_lossy(), line: line.unwrap_or(0) })
-}
-
-/// JSON has only finite numbers.
-fn finite(number: f64) -> Option<f64> {
-    number.is_finite().then_some(number)
 }
 
 /// A Lua string, even if it is not UTF-8; `None` for any other value.

@@ -4,8 +4,7 @@ use std::collections::HashMap;
 
 use rtf_model::{Comparison, Location, Message, MessageKind};
 
-use crate::case_reporter::StartedCase;
-use crate::framework::ListedCase;
+use crate::case::{ListedCase, StartedCase};
 use crate::xml_stream::Attributes;
 
 /// A failure, an error or a passed check.

@@ -7,9 +7,8 @@
 use std::process::Command;
 
 use super::session_program::SessionReader;
-use crate::framework::{
-    Framework, Launch, ListError, ListedCase, ReportChannel, ReportReader, TestProgram,
-};
+use crate::case::ListedCase;
+use crate::framework::{Framework, Launch, ListError, ReportChannel, ReportReader, TestProgram};
 
 /// The adapter.
 #[derive(Clone, Copy, Debug)]

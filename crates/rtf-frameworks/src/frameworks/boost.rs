@@ -10,8 +10,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
+use crate::case::ListedCase;
 use crate::framework::{
-    Framework, Launch, ListError, ListedCase, OpenChannel, ReportChannel, ReportReader, TestProgram,
+    Framework, Launch, ListError, OpenChannel, ReportChannel, ReportReader, TestProgram,
 };
 use crate::listing::{self, file_name};
 

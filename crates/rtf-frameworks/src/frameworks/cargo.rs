@@ -10,9 +10,8 @@ use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use crate::framework::{
-    Framework, Launch, ListError, ListedCase, ReportChannel, ReportReader, TestProgram,
-};
+use crate::case::ListedCase;
+use crate::framework::{Framework, Launch, ListError, ReportChannel, ReportReader, TestProgram};
 use crate::listing;
 use build::{Build, TestBinary};
 

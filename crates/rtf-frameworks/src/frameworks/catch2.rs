@@ -13,8 +13,9 @@ use std::time::Duration;
 use rtf_model::Location;
 
 use super::assertion;
+use crate::case::ListedCase;
 use crate::framework::{
-    Framework, Launch, ListError, ListedCase, OpenChannel, ReportChannel, ReportReader, TestProgram,
+    Framework, Launch, ListError, OpenChannel, ReportChannel, ReportReader, TestProgram,
 };
 use crate::listing::{self, file_name};
 use crate::xml_report::XmlReport;

@@ -18,9 +18,8 @@ use std::time::Duration;
 
 use rtf_model::{Location, Outcome};
 
-use crate::framework::{
-    CaseResult, Framework, Launch, ListError, ListedCase, ReportChannel, ReportReader, TestProgram,
-};
+use crate::case::{CaseResult, ListedCase};
+use crate::framework::{Framework, Launch, ListError, ReportChannel, ReportReader, TestProgram};
 use crate::listing;
 use properties::CTestCase;
 

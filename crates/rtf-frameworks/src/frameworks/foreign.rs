@@ -7,10 +7,9 @@ use rtf_host::Session;
 use rtf_model::{ExitStatus, Outcome};
 
 use super::{boost, catch2, ctest, doctest, gtest, junit};
+use crate::case::{CaseResult, ListedCase, Selection};
 use crate::case_reporter::CaseReporter;
-use crate::framework::{
-    CaseResult, Launch, ListedCase, OpenChannel, OutputStream, ReportReader, Selection, TestProgram,
-};
+use crate::framework::{Launch, OpenChannel, OutputStream, ReportReader, TestProgram};
 
 /// The types whose list of cases [`count_listed`] reads.
 pub const LISTS: [&str; 6] = ["boost", "catch2", "ctest", "doctest", "gtest", "junit"];

@@ -12,8 +12,9 @@ use std::time::Duration;
 
 use rtf_model::Location;
 
+use crate::case::ListedCase;
 use crate::framework::{
-    Framework, Launch, ListError, ListedCase, ReportChannel, ReportReader, StackDump, TestProgram,
+    Framework, Launch, ListError, ReportChannel, ReportReader, StackDump, TestProgram,
 };
 use crate::listing;
 

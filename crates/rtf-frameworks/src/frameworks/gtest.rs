@@ -16,8 +16,9 @@ use rtf_model::{Location, Parameter};
 use serde::Deserialize;
 use serde_json::Value;
 
+use crate::case::ListedCase;
 use crate::framework::{
-    Framework, Launch, ListError, ListedCase, OpenChannel, ReportChannel, ReportReader, TestProgram,
+    Framework, Launch, ListError, OpenChannel, ReportChannel, ReportReader, TestProgram,
 };
 use crate::listing::{self, file_name};
 

@@ -13,9 +13,9 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
+use crate::case::ListedCase;
 use crate::framework::{
-    Framework, Launch, ListError, ListedCase, OpenChannel, ReportChannel, ReportReader, StackDump,
-    TestProgram,
+    Framework, Launch, ListError, OpenChannel, ReportChannel, ReportReader, StackDump, TestProgram,
 };
 use crate::listing::{self, file_name};
 use events::TestEvents;

@@ -4,9 +4,9 @@ use std::process::Command;
 
 use rtf_model::{ExitStatus, Outcome};
 
+use crate::case::{CaseResult, ListedCase};
 use crate::framework::{
-    CaseResult, Framework, Launch, ListError, ListedCase, NoReport, ReportChannel, ReportReader,
-    TestProgram,
+    Framework, Launch, ListError, NoReport, ReportChannel, ReportReader, TestProgram,
 };
 
 /// The exit code of a test that skips itself, as in Automake and Meson.

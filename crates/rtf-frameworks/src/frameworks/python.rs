@@ -8,7 +8,8 @@ use std::time::Duration;
 use rtf_model::{Location, Parameter};
 use serde::Deserialize;
 
-use crate::framework::{ListError, ListedCase, TestProgram};
+use crate::case::ListedCase;
+use crate::framework::{ListError, TestProgram};
 use crate::listing::{self, Listed, file_name};
 
 /// The limit for listing the cases of a test: all its modules are imported.

@@ -8,8 +8,9 @@ use rtf_host::Session;
 use rtf_model::ExitStatus;
 use serde_json::Value;
 
+use crate::case::CaseResult;
 use crate::case_reporter::CaseReporter;
-use crate::framework::{CaseResult, Garbage, ReportReader};
+use crate::framework::{Garbage, ReportReader};
 
 /// The notifications about a report that arrives in pieces of this size, one per line.
 /// Cases that are open at the end have crashed.

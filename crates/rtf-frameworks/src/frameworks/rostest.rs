@@ -10,10 +10,10 @@ use std::process::Command;
 
 use rtf_model::{ExitStatus, Location, MessageKind, Outcome};
 
-use crate::case_reporter::{CaseReporter, StartedCase};
+use crate::case::{CaseResult, ListedCase, StartedCase};
+use crate::case_reporter::CaseReporter;
 use crate::framework::{
-    CaseResult, Framework, Garbage, Launch, ListError, ListedCase, ReportChannel, ReportReader,
-    TestProgram,
+    Framework, Garbage, Launch, ListError, ReportChannel, ReportReader, TestProgram,
 };
 use results::{NodeResult, Problem, TestResult};
 

@@ -9,8 +9,8 @@ use std::collections::HashMap;
 
 use rtf_model::Location;
 
-use crate::case_reporter::{CaseReporter, StartedCase};
-use crate::framework::CaseResult;
+use crate::case::{CaseResult, StartedCase};
+use crate::case_reporter::CaseReporter;
 
 #[derive(Debug)]
 struct Section {

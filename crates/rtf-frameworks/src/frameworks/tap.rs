@@ -13,10 +13,10 @@ use std::process::Command;
 
 use rtf_model::{Comparison, ExitStatus, Location, Measurement, Message, MessageKind, Outcome};
 
-use crate::case_reporter::{CaseReporter, StartedCase};
+use crate::case::{CaseResult, ListedCase, StartedCase};
+use crate::case_reporter::CaseReporter;
 use crate::framework::{
-    CaseResult, Framework, Garbage, Launch, ListError, ListedCase, OutputStream, ReportChannel,
-    ReportReader, TestProgram,
+    Framework, Garbage, Launch, ListError, OutputStream, ReportChannel, ReportReader, TestProgram,
 };
 use diagnostics::Diagnostics;
 use line::Directive;

@@ -3,9 +3,9 @@
 
 use std::process::Command;
 
+use crate::case::ListedCase;
 use crate::framework::{
-    Framework, Launch, ListError, ListedCase, NoReport, ReportChannel, ReportReader, StackDump,
-    TestProgram,
+    Framework, Launch, ListError, NoReport, ReportChannel, ReportReader, StackDump, TestProgram,
 };
 
 use super::python;

@@ -21,8 +21,9 @@ use rtf_model::protocol::{CaseSelector, FixtureValue, Plugin};
 use rtf_model::{ExitStatus, Outcome};
 use rustix::process::{Pid, Signal, kill_process_group};
 
+use crate::case::{CaseResult, ListedCase, Selection};
 use crate::case_reporter::CaseReporter;
-use crate::framework::{CaseResult, Framework, ListedCase, Selection, StackDump, TestProgram};
+use crate::framework::{Framework, StackDump, TestProgram};
 use crate::wanted::WantedCases;
 use fork_server::{ForkPoint, ForkServer};
 use process::{ProcessEnd, Termination};

@@ -18,8 +18,9 @@ use super::fork_server::ProgramEnds;
 use super::session_socket::{self, SessionSocket};
 use super::streams::{self, Source};
 use super::{TestRun, stack};
+use crate::case::Selection;
 use crate::case_reporter::CaseReporter;
-use crate::framework::{Garbage, Launch, OutputStream, ReportChannel, ReportReader, Selection};
+use crate::framework::{Garbage, Launch, OutputStream, ReportChannel, ReportReader};
 use crate::listing;
 
 /// How much is read at once.

@@ -12,8 +12,8 @@ use rustix::net::{
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::case_reporter::{CaseReporter, StartedCase};
-use crate::framework::CaseResult;
+use crate::case::{CaseResult, StartedCase};
+use crate::case_reporter::CaseReporter;
 
 /// The longest packet.
 const PACKET: usize = 256 * 1024;

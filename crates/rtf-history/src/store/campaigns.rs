@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::database::{Database, DatabaseError, Row, Value};
-use super::import::json;
+use super::json::json;
 use super::read::{list, time};
 use super::{ImportOutcome, Keep, Store, StoreError, sql};
 use crate::entry::{CampaignEnd, CampaignEntry, CampaignInfo, EpisodeEntry};

@@ -3,6 +3,7 @@
 use rtf_model::Record;
 
 use super::database::{Database, DatabaseError, Value};
+use super::json::json;
 use super::{Store, StoreError, rows, sql};
 use crate::entry::RunEntry;
 
@@ -156,8 +157,4 @@ fn insert_run(database: &Database, run: &RunEntry) -> Result<i64, DatabaseError>
 /// The first event as text: equal for journals of the same run only.
 fn started_text(run: &RunEntry) -> String {
     json(&run.started)
-}
-
-pub(super) fn json(value: &impl serde::Serialize) -> String {
-    serde_json::to_string(value).unwrap_or_default()
 }

@@ -4,18 +4,18 @@ use rusqlite::Connection;
 use rusqlite_migration::{M, Migrations};
 
 use super::database::PostgresDatabase;
-use super::{Location, Store, StoreError, sql};
+use super::{Location, Store, StoreError, schema};
 
 /// Brings a SQLite database to the newest version.
 pub(super) fn migrate(connection: &mut Connection, at: &Location) -> Result<(), StoreError> {
-    if check_version(connection, at)? == sql::MIGRATIONS.len() {
+    if check_version(connection, at)? == schema::MIGRATIONS.len() {
         return Ok(());
     }
-    let steps = sql::MIGRATIONS.iter().map(|step| M::up(step)).collect();
+    let steps = schema::MIGRATIONS.iter().map(|step| M::up(step)).collect();
     match Migrations::new(steps).to_latest(connection) {
         Ok(()) => {}
         // Another process was faster.
-        Err(_) if check_version(connection, at)? == sql::MIGRATIONS.len() => {}
+        Err(_) if check_version(connection, at)? == schema::MIGRATIONS.len() => {}
         Err(rusqlite_migration::Error::RusqliteError { err, .. }) => {
             return Err(StoreError::new(at, err.into()));
         }
@@ -23,7 +23,7 @@ pub(super) fn migrate(connection: &mut Connection, at: &Location) -> Result<(), 
             return Err(StoreError::Io { location: at.clone(), source: other.into() });
         }
     }
-    let id = sql::APPLICATION_ID;
+    let id = schema::APPLICATION_ID;
     let marked = connection.pragma_update(None, "application_id", id);
     marked.map_err(|error| StoreError::new(at, error.into()))
 }
@@ -41,7 +41,7 @@ pub(super) fn check_version(connection: &Connection, at: &Location) -> Result<us
     let (version, application, is_empty) =
         read().map_err(|error| StoreError::new(at, error.into()))?;
     // A creation that was killed may have no application id yet.
-    let is_ours = application == sql::APPLICATION_ID || is_empty || is_new_history(connection);
+    let is_ours = application == schema::APPLICATION_ID || is_empty || is_new_history(connection);
     if is_ours {
         known_version(version, at)
     } else {
@@ -51,7 +51,7 @@ pub(super) fn check_version(connection: &Connection, at: &Location) -> Result<us
 
 /// Returns the version, unless it is newer than this program.
 fn known_version(version: i64, at: &Location) -> Result<usize, StoreError> {
-    let known = sql::MIGRATIONS.len();
+    let known = schema::MIGRATIONS.len();
     let newer = || StoreError::Newer { location: at.clone(), found: version, known };
     usize::try_from(version).ok().filter(|version| *version <= known).ok_or_else(newer)
 }
@@ -71,7 +71,7 @@ impl Store {
     ) -> Result<(), StoreError> {
         let failed = |error| StoreError::new(at, error);
         let version = database.version().map_err(failed)?.unwrap_or_default();
-        if known_version(version, at)? < sql::MIGRATIONS.len() {
+        if known_version(version, at)? < schema::MIGRATIONS.len() {
             database.migrate().map_err(failed)?;
         }
         Ok(())

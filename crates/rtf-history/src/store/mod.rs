@@ -5,11 +5,13 @@ mod columns;
 mod database;
 mod error;
 mod import;
+mod json;
 mod location;
 mod migrate;
 mod prune;
 mod read;
 mod rows;
+pub mod schema;
 pub mod sql;
 
 use std::cell::RefCell;

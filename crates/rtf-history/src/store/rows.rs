@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::columns::{PackedResult, PointPacker, ResultPacker};
 use super::database::{Database, DatabaseError, Row, Value};
-use super::import::json;
+use super::json::json;
 use super::{read, sql};
 use crate::TestIdentity;
 use crate::entry::{ResultEntry, RunEntry, SeriesName};

@@ -179,7 +179,7 @@ fn a_database_of_the_first_version_is_read_and_extended() {
     let dir = tempfile::tempdir().expect("a directory");
     let path = dir.path().join("history.db");
     let connection = rusqlite::Connection::open(&path).expect("a database");
-    connection.execute_batch(rtf_history::store::sql::MIGRATIONS[0]).expect("tables");
+    connection.execute_batch(rtf_history::store::schema::MIGRATIONS[0]).expect("tables");
     connection.pragma_update(None, "user_version", 1).expect("a version");
     drop(connection);
     let mut store = Store::open(&path).expect("a store");

@@ -3,7 +3,7 @@
 
 use rtf_model::Location;
 
-use crate::framework::ListedCase;
+use crate::case::ListedCase;
 
 /// The cases in a graph; `None` if it is none.
 pub(super) fn parse(text: &str) -> Option<Vec<ListedCase>> {

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use rtf_model::{Comparison, ExitStatus, Location, Message, MessageKind, Outcome};
 
 use super::super::assertion;
+use crate::case::CaseResult;
 use crate::case_reporter::CaseReporter;
-use crate::framework::{CaseResult, Garbage, ReportReader};
+use crate::framework::{Garbage, ReportReader};
 use crate::xml_report::XmlReport;
 use crate::xml_stream::{Attributes, XmlEvent};
 

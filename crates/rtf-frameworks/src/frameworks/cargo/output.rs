@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use rtf_model::{ExitStatus, Location, MessageKind, Outcome};
 
+use crate::case::CaseResult;
 use crate::case_reporter::CaseReporter;
-use crate::framework::{CaseResult, Garbage, OutputStream, ReportReader};
+use crate::framework::{Garbage, OutputStream, ReportReader};
 use crate::utf8_pieces::Utf8Pieces;
 
 /// How the summary begins. A test can print that, too: the last one counts.

@@ -5,8 +5,9 @@ use rtf_model::{ExitStatus, Location, Measurement, MessageKind, Outcome};
 use super::super::assertion::{self, RunningCases};
 use super::super::sections::Sections;
 use super::{ALL_SKIPPED, tags};
+use crate::case::{CaseResult, ListedCase};
 use crate::case_reporter::CaseReporter;
-use crate::framework::{CaseResult, Garbage, ListedCase, ReportReader};
+use crate::framework::{Garbage, ReportReader};
 use crate::xml_report::XmlReport;
 use crate::xml_stream::{Attributes, XmlEvent};
 

@@ -8,8 +8,9 @@ use rtf_model::{Attachment, ExitStatus, MessageKind, Outcome};
 
 use super::measurements::{self, Printed};
 use super::properties::CTestCase;
+use crate::case::CaseResult;
 use crate::case_reporter::CaseReporter;
-use crate::framework::{CaseResult, Garbage, OutputStream, ReportReader};
+use crate::framework::{Garbage, OutputStream, ReportReader};
 
 /// Maximum size of an output that is searched.
 const OUTPUT_BYTES: usize = 64 << 20;

@@ -4,8 +4,9 @@ use rtf_model::{ExitStatus, Location, Message, MessageKind, Outcome};
 
 use super::super::assertion::{self, RunningCases};
 use super::super::sections::Sections;
+use crate::case::{CaseResult, ListedCase};
 use crate::case_reporter::CaseReporter;
-use crate::framework::{CaseResult, Garbage, ListedCase, ReportReader};
+use crate::framework::{Garbage, ReportReader};
 use crate::xml_report::XmlReport;
 use crate::xml_stream::{Attributes, XmlEvent};
 

@@ -7,8 +7,9 @@ use rtf_model::{ExitStatus, MessageKind, Outcome};
 use serde::Deserialize;
 
 use super::text::{self, Crash, LogEntry};
-use crate::case_reporter::{CaseReporter, StartedCase};
-use crate::framework::{CaseResult, Garbage, ListedCase, ReportReader};
+use crate::case::{CaseResult, ListedCase, StartedCase};
+use crate::case_reporter::CaseReporter;
+use crate::framework::{Garbage, ReportReader};
 
 /// How much text of a test is kept at most, for its log and the reason of a failure.
 const TEXT_BYTES: usize = 1024 * 1024;

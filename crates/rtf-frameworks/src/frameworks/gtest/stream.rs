@@ -6,8 +6,9 @@ use std::path::PathBuf;
 use rtf_model::{ExitStatus, Location, MessageKind, Outcome};
 
 use super::Report;
-use crate::case_reporter::{CaseReporter, StartedCase};
-use crate::framework::{CaseResult, Garbage, ListedCase, OutputStream, ReportReader};
+use crate::case::{CaseResult, ListedCase, StartedCase};
+use crate::case_reporter::CaseReporter;
+use crate::framework::{Garbage, OutputStream, ReportReader};
 use crate::utf8_pieces::Utf8Pieces;
 
 const SKIPPED: &str = "[  SKIPPED ] ";

@@ -11,8 +11,9 @@ use rtf_model::{Attachment as File, ExitStatus, MessageKind, Outcome};
 
 use super::events::{Attachment, Finished, Started, TestEvent, TestEvents};
 use super::stack_trace;
-use crate::case_reporter::{CaseReporter, StartedCase};
-use crate::framework::{CaseResult, Garbage, ListedCase, ReportReader};
+use crate::case::{CaseResult, ListedCase, StartedCase};
+use crate::case_reporter::CaseReporter;
+use crate::framework::{Garbage, ReportReader};
 
 /// What an open element of the stream is.
 #[derive(Clone, Debug)]

@@ -12,7 +12,7 @@ use postgres::{Client, Config, Statement};
 
 use super::tls::{Encryption, connector};
 use super::{DatabaseError, Row, Value, Visit, dialect};
-use crate::store::sql;
+use crate::store::schema;
 
 /// How long a connection may take, unless the address says otherwise with `connect_timeout`: the
 /// end of a run waits for it.
@@ -184,10 +184,10 @@ impl PostgresDatabase {
 
     /// The number of the last migration; `None` if there are no tables.
     pub fn version(&mut self) -> Result<Option<i64>, DatabaseError> {
-        let table = self.client.query_one(sql::POSTGRES_TABLE, &[])?;
+        let table = self.client.query_one(schema::POSTGRES_TABLE, &[])?;
         match table.try_get::<_, Option<String>>(0)? {
             None => Ok(None),
-            Some(_) => Ok(self.client.query_one(sql::POSTGRES_VERSION, &[])?.try_get(0)?),
+            Some(_) => Ok(self.client.query_one(schema::POSTGRES_VERSION, &[])?.try_get(0)?),
         }
     }
 
@@ -200,13 +200,13 @@ impl PostgresDatabase {
     }
 
     fn migrate_locked(&mut self) -> Result<(), DatabaseError> {
-        self.client.batch_execute(sql::POSTGRES_SCHEMA)?;
+        self.client.batch_execute(schema::POSTGRES_SCHEMA)?;
         // Another process may have been faster.
         let version = self.version()?.unwrap_or_default();
-        for (migration, number) in sql::MIGRATIONS.iter().zip(1_i64..) {
+        for (migration, number) in schema::MIGRATIONS.iter().zip(1_i64..) {
             if number > version {
                 self.client.batch_execute(&dialect::postgres(migration))?;
-                self.client.execute(sql::POSTGRES_MIGRATED, &[&number])?;
+                self.client.execute(schema::POSTGRES_MIGRATED, &[&number])?;
             }
         }
         Ok(())

@@ -10,6 +10,7 @@ mod episodes;
 mod faults;
 mod findings;
 mod fixture_examinations;
+mod host_sharing;
 mod scheduler;
 mod shared_host;
 mod soak;

@@ -5,7 +5,7 @@ use std::path::Path;
 use rtf_model::ExitStatus;
 
 use super::*;
-use crate::case_reporter::StartedCase;
+use crate::case::StartedCase;
 use crate::frameworks::recorded::{replay, replay_in_pieces};
 
 /// A reader whose case has started, as the supervisor starts it.

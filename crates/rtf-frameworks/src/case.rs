@@ -1,0 +1,88 @@
+//! A case of a framework: as it is listed before the run, starts and ends.
+
+use std::time::Duration;
+
+use rtf_model::{Location, Outcome, Parameter};
+use serde::Serialize;
+
+/// A case that a framework lists before the run.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct ListedCase {
+    /// Its name, unique in the test.
+    pub name: String,
+    /// Its location, if the framework knows it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub location: Option<Location>,
+    /// Its tags.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
+    /// Its parameters.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub parameters: Vec<Parameter>,
+    /// Whether the framework runs it only on demand.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub disabled: bool,
+    /// Why it is disabled; `disabled` if the framework gives no reason.
+    #[serde(skip)]
+    pub disabled_reason: Option<String>,
+    /// How the framework identifies it, if not by its name.
+    #[serde(skip)]
+    pub id: Option<String>,
+    /// The limit that the framework's own configuration sets.
+    #[serde(skip)]
+    pub timeout: Option<Duration>,
+}
+
+impl ListedCase {
+    /// The start of the case, as far as it is known before the run.
+    #[must_use]
+    pub fn start(&self) -> StartedCase {
+        StartedCase {
+            name: self.name.clone(),
+            parameters: self.parameters.clone(),
+            tags: self.tags.clone(),
+            location: self.location.clone(),
+        }
+    }
+}
+
+/// The start of a case, as a framework reports it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct StartedCase {
+    /// Its name.
+    pub name: String,
+    /// Its parameters.
+    pub parameters: Vec<Parameter>,
+    /// Its tags.
+    pub tags: Vec<String>,
+    /// Its location.
+    pub location: Option<Location>,
+}
+
+/// How a case ended, for cases that the adapter judges itself.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct CaseResult {
+    /// The outcome, if no message reports it.
+    pub outcome: Option<Outcome>,
+    /// The reason for the outcome.
+    pub reason: Option<String>,
+    /// How long the case took, if the framework measured it. Otherwise it is the time between
+    /// the arrivals of its start and its end.
+    pub duration: Option<Duration>,
+}
+
+impl CaseResult {
+    /// A result with a reason.
+    pub fn new(outcome: Outcome, reason: impl Into<String>) -> Self {
+        Self { outcome: Some(outcome), reason: Some(reason.into()), duration: None }
+    }
+}
+
+/// The cases that one process of the program runs.
+#[derive(Clone, Copy, Debug)]
+pub struct Selection<'a> {
+    /// The cases; empty if the framework has no list.
+    pub cases: &'a [ListedCase],
+    /// Whether these are all cases of the program, so that nothing needs to be selected.
+    pub is_all: bool,
+}
