@@ -7,6 +7,7 @@
 //! which knows the running tests ([`test_run`]) with their batches ([`batches`]) and monitors ([`judge`]).
 
 mod batches;
+mod command;
 mod host;
 mod judge;
 mod line;

@@ -2,12 +2,13 @@
 
 use std::io::{ErrorKind, Read};
 use std::os::unix::process::CommandExt;
-use std::process::{Child, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdout};
 use std::time::{Duration, Instant};
 
 use rtf_model::SignalTime;
 use rustix::process::{Pid, Signal, kill_process_group};
 
+use crate::command::{self, shown};
 use crate::line;
 use crate::recorder::Recorder;
 use crate::settings::ProgramSettings;
@@ -52,10 +53,8 @@ impl Program {
     /// Why it cannot be started.
     pub fn start(index: usize, settings: &ProgramSettings) -> Result<Self, String> {
         let failed = |error: std::io::Error| format!("{}: {error}", shown(&settings.words));
-        let (program, args) = settings.words.split_first().ok_or("there is no program")?;
-        let mut command = Command::new(program);
-        command.args(args).stdin(Stdio::null()).stdout(Stdio::piped()).process_group(0);
-        let mut child = command.spawn().map_err(failed)?;
+        let mut command = command::of(&settings.words)?;
+        let mut child = command.process_group(0).spawn().map_err(failed)?;
         let output = child.stdout.take().ok_or("the program has no output")?;
         rustix::io::ioctl_fionbio(&output, true).map_err(|error| failed(error.into()))?;
         Ok(Self {
@@ -220,8 +219,4 @@ impl Program {
         // It fails if all of its processes have ended.
         let _ = pid.map(|pid| kill_process_group(pid, signal));
     }
-}
-
-pub(crate) fn shown(words: &[String]) -> String {
-    format!("`{}`", words.join(" "))
 }

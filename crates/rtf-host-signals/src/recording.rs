@@ -1,10 +1,9 @@
 //! A recording, whose samples are played in each test.
 
 use std::io::{BufRead, BufReader};
-use std::process::{Command, Stdio};
 
+use crate::command::{self, shown};
 use crate::line;
-use crate::program::shown;
 use crate::settings::RecordingSettings;
 
 /// The most samples of a recording, which are kept in memory.
@@ -32,9 +31,7 @@ impl Recording {
     /// It failed, or wrote something else than samples.
     pub fn read(settings: &RecordingSettings) -> Result<Self, String> {
         let command = shown(&settings.words);
-        let (program, args) = settings.words.split_first().ok_or("there is no program")?;
-        let mut reading = Command::new(program);
-        reading.args(args).stdin(Stdio::null()).stdout(Stdio::piped());
+        let mut reading = command::of(&settings.words)?;
         let failed = |error: std::io::Error| format!("{command}: {error}");
         let mut child = reading.spawn().map_err(failed)?;
         let output = child.stdout.take().ok_or("the program has no output")?;
