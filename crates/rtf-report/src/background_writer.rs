@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 use anstream::adapter::StripBytes;
 use anstream::{AutoStream, ColorChoice};
 
-use crate::console::{Bar, BarState};
 use crate::is_disconnect;
+use crate::progress_bar::{Bar, BarState};
 
 /// Above this number of pending bytes, reporters omit detail.
 const FULL: usize = 4 * 1024 * 1024;

@@ -39,6 +39,7 @@ mod outcome;
 pub mod output_file;
 pub mod predecessor;
 mod private_resources;
+mod progress_bar;
 pub mod repetition_summary;
 mod report_file;
 mod reporter;

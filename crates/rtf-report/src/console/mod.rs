@@ -26,8 +26,6 @@ use std::time::Duration;
 
 use rtf_model::{Event, EventKind, Micros, Record};
 
-pub(crate) use progress::{Bar, BarState};
-
 pub use details::drop_details;
 pub use failed_tests::{is_recording, replay_test};
 pub use options::{
@@ -37,6 +35,7 @@ pub use questions::{AskedHere, Operator};
 
 use crate::background_writer::BackgroundWriter;
 use crate::disconnect::UntilDisconnect;
+use crate::progress_bar::{Bar, BarState};
 use crate::{ReportError, Reporter, words};
 use page::ConsoleLines;
 use progress::Progress;
