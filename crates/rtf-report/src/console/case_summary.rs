@@ -1,12 +1,10 @@
-//! Cases, known failures and skips in the summary.
-
-use std::collections::BTreeMap;
+//! Failed cases and known failures in the summary.
 
 use rtf_model::{Record, Significance, TestRecord, Verdict};
 
+use super::ConsoleOptions;
 use super::page::ConsoleLines;
 use super::style::{self, BAD, BOLD, LOUD};
-use super::{ConsoleOptions, summary};
 use crate::cases::{CaseResult, TestCases};
 use crate::{escape, known_failure, words};
 
@@ -104,34 +102,4 @@ pub(super) fn known(page: &mut ConsoleLines, record: &Record) {
 pub(super) fn mark(page: &mut ConsoleLines, test: &TestRecord) {
     let facts = test.plan.expected.as_deref().map(known_failure::facts);
     facts.iter().flatten().for_each(|(label, text)| page.fact(label, text));
-}
-
-/// Lists tests and cases that skipped themselves.
-pub(super) fn skipped(page: &mut ConsoleLines, record: &Record) {
-    let mut reasons: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
-    for test in &record.tests {
-        let name = || escape::line(&record.full_name(test.plan.test)).into_owned();
-        if test.significance() == Significance::SkippedItself {
-            let reason = test.reason().unwrap_or("without a reason");
-            reasons.entry((reason, "test")).or_default().push(name());
-        }
-        if !test.has_skipped_cases() {
-            continue;
-        }
-        let cases = TestCases::of(test);
-        let results = cases.iter().flat_map(|cases| &cases.results);
-        for case in results.filter(|case| case.verdict() == Some(Verdict::Skipped)) {
-            let reason = case.record.and_then(|case| case.reason()).unwrap_or("without a reason");
-            let name = format!("{}/{}", name(), escape::line(case.path));
-            reasons.entry((reason, "case")).or_default().push(name);
-        }
-    }
-    if reasons.is_empty() {
-        return;
-    }
-    page.line("");
-    page.line(&style::paint(BOLD, "skipped themselves:"));
-    for ((reason, noun), names) in reasons {
-        summary::skipped_names(page, noun, reason, &names);
-    }
 }

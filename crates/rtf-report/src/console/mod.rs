@@ -16,6 +16,7 @@ mod page;
 mod progress;
 mod questions;
 mod results;
+mod skips;
 mod style;
 mod summary;
 mod verbose;

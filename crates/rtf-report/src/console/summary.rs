@@ -1,19 +1,14 @@
 //! The summary at the end: problems, logs, commands for reruns,
 //! and the result in the last line.
 
-use std::collections::BTreeMap;
-
-use rtf_model::{Record, Significance, TestId, Verdict};
+use rtf_model::Record;
 
 use super::page::ConsoleLines;
 use super::style::{self, BAD, BOLD, GOOD, LOUD};
-use super::{ConsoleOptions, case_summary, failed_tests, hooks};
+use super::{ConsoleOptions, case_summary, failed_tests, hooks, skips};
 use crate::growth::{self, Growing, Within};
 use crate::repetition_summary::Repeated;
-use crate::{cause, escape, explain, outcome, words};
-
-/// Maximum number of skipped tests that are listed per reason.
-const NAMES: usize = 5;
+use crate::{escape, explain, outcome, words};
 
 /// Minimum number of repetitions for a histogram.
 const HISTOGRAM: usize = 10;
@@ -31,8 +26,8 @@ pub(super) fn show(page: &mut ConsoleLines, options: &ConsoleOptions, record: &R
     flaky(page, record);
     repeated(page, record);
     growing(page, record);
-    skipped(page, record);
-    case_summary::skipped(page, record);
+    skips::by_runner(page, record);
+    skips::by_themselves(page, record);
     killed(page, record);
     page.line("");
     if let Some(folder) = &options.folder {
@@ -58,40 +53,6 @@ fn problems(page: &mut ConsoleLines, record: &Record) {
     for same in problems.chunk_by(|a, b| a == b) {
         let times = if same.len() > 1 { format!(" ({} times)", same.len()) } else { String::new() };
         page.line(&format!("  {}{times}", style::paint(BAD, &same[0])));
-    }
-}
-
-fn skipped(page: &mut ConsoleLines, record: &Record) {
-    let mut reasons: BTreeMap<&str, Vec<TestId>> = BTreeMap::new();
-    for test in &record.tests {
-        let skipped_itself = test.significance() == Significance::SkippedItself;
-        if test.final_verdict() == Verdict::Skipped && !skipped_itself {
-            let reason = test.skipped.as_deref();
-            let reason = reason.unwrap_or("the run ended before the test started");
-            reasons.entry(reason).or_default().push(test.plan.test);
-        }
-    }
-    if reasons.is_empty() {
-        return;
-    }
-    page.line("");
-    page.line(&style::paint(BOLD, "skipped tests:"));
-    for (reason, tests) in reasons {
-        let name = |id: &TestId| escape::line(&record.full_name(*id)).into_owned();
-        let names: Vec<_> = tests.iter().map(name).collect();
-        skipped_names(page, "test", cause::short(record, reason), &names);
-    }
-}
-
-/// Lists tests or cases that were skipped for one reason.
-pub(super) fn skipped_names(page: &mut ConsoleLines, noun: &str, reason: &str, names: &[String]) {
-    let count = style::paint(LOUD, &words::count(names.len() as u64, noun));
-    page.line(&format!("  {count}: {}", words::first_line(reason)));
-    for name in names.iter().take(NAMES) {
-        page.line(&format!("    {name}"));
-    }
-    if names.len() > NAMES {
-        page.line(&format!("    … and {} more", names.len() - NAMES));
     }
 }
 
