@@ -3,8 +3,8 @@
 
 use rtf_model::{HookId, HookRunRecord, Record};
 
-use super::live::{self, EXTENT};
 use super::page::ConsoleLines;
+use super::result_details::{self, EXTENT};
 use super::style::{self, BAD, BOLD, DIM, GOOD};
 use super::{ConsoleOptions, Verbosity};
 use crate::explain::{self, Tone};
@@ -29,7 +29,7 @@ pub(super) fn finished(
         let reason = style::paint(DIM, &words::first_line(cause::short(record, &run.reason)));
         page.entry((GOOD, "hook"), &time, &format!("{title}: done  {reason}"));
     }
-    live::leaked(page, &title, &run.leaked);
+    result_details::leaked(page, &title, &run.leaked);
 }
 
 /// `arm/park (collapse)`.
@@ -51,7 +51,7 @@ fn failed(
         sink(Tone::Dim, &format!("about: {}", escape::line(&record.full_name(test))));
     }
     if !run.output.is_empty() && options.verbosity < Verbosity::Verbose {
-        live::output(&run.output, options.shown(&logs::hook_log(record, id)), sink);
+        result_details::output(&run.output, options.shown(&logs::hook_log(record, id)), sink);
     }
 }
 

@@ -15,6 +15,7 @@ mod options;
 mod page;
 mod progress;
 mod questions;
+mod result_details;
 mod results;
 mod skips;
 mod style;

@@ -5,8 +5,8 @@ use rtf_model::{
     TestRecord, Verdict,
 };
 
-use super::live::{self, EXTENT};
 use super::page::ConsoleLines;
+use super::result_details::{self, EXTENT};
 use super::style::{self, BAD, LOUD};
 use super::{ConsoleOptions, Verbosity};
 use crate::cases::CaseProblems;
@@ -88,7 +88,7 @@ pub(super) fn test_finished(
         }
     }
     if known || skipped_itself || finished.verdict.is_green() {
-        return live::leaked(page, &name, &attempt.leaked);
+        return result_details::leaked(page, &name, &attempt.leaked);
     }
     problem(page, options, record, (test, attempt));
 }
@@ -142,7 +142,7 @@ fn problem(
     explain::left(&attempt.leaked, sink);
     if !attempt.output.is_empty() && options.verbosity < Verbosity::Verbose {
         let log = options.shown(&logs::log(record, Source::Test(test.plan.test)));
-        live::output(&attempt.output, log, sink);
+        result_details::output(&attempt.output, log, sink);
     }
 }
 
