@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 
 use rtf_model::{CaseFinished, CaseId, EventKind, Phase, TestFinished, TestId, Verdict};
 
-use super::suite::DIED;
+/// The reason of tests, fixtures and hooks that the death of a runner left open.
+pub(super) const DIED: &str = "the runner died";
 
 /// The tests of a suite with episodes.
 #[derive(Debug, Default)]

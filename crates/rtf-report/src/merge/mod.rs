@@ -17,6 +17,7 @@
 //! - [`kept_attachments`]: which attachments are kept.
 //! - [`suite`] and [`piece`]: what happened in a suite, one part after the other, from the
 //!   journals.
+//! - [`lives`]: which fixtures, hooks and tests are open.
 //! - [`episode_tests`]: the repetitions of tests that several parts have.
 //!
 //! `spec/events.md` says what the merged stream has of which run.
@@ -25,6 +26,7 @@ mod attached_file;
 mod episode_tests;
 mod first_pass;
 mod kept_attachments;
+mod lives;
 mod manifest;
 mod piece;
 mod place;

@@ -3,9 +3,9 @@
 use rtf_model::{Event, EventKind, Micros, SuiteId};
 
 use super::kept_attachments::{KeptAttempts, OpenAttempts};
+use super::lives::Lives;
 use super::place::Ids;
 use super::plan::MergedPlan;
-use super::suite::Lives;
 use super::{AttachedFile, MergeInput, Merging};
 use crate::journal::{JournalError, LinePosition, Section};
 
