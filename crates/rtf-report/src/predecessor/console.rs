@@ -6,8 +6,8 @@ use std::path::Path;
 use anstyle::{AnsiColor, Style};
 use rtf_model::{Event, EventKind, Output, Record};
 
-use super::lines::{self, ResultLine, Word};
-use super::summary;
+use super::result_line::{ResultLine, Word};
+use super::{lines, summary};
 use crate::background_writer::BackgroundWriter;
 use crate::disconnect::UntilDisconnect;
 use crate::{ReportError, Reporter, escape};
@@ -96,7 +96,7 @@ impl ResultList {
     }
 
     fn progress(&mut self, text: &str) {
-        self.line(&ResultLine { word: Word::Progress, text: text.to_owned(), place: None });
+        self.line(&ResultLine::progress(text.to_owned()));
     }
 
     /// What the plug-ins print, as it comes.

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use rtf_model::Record;
 
-use super::lines::{self, ResultLine};
-use super::summary;
+use super::result_line::ResultLine;
+use super::{lines, summary};
 use crate::journal::{self, JournalError};
 use crate::{ReportError, ReportFile};
 

@@ -8,6 +8,7 @@ mod console;
 mod file;
 mod lines;
 mod problems;
+mod result_line;
 mod summary;
 
 pub use console::{ResultList, ResultListOptions};

@@ -6,7 +6,7 @@ use rtf_model::{
     TestFinished, Verdict,
 };
 
-use super::lines::{ResultLine, Word};
+use super::result_line::{ResultLine, Word};
 use crate::{explain, known_failure};
 
 /// The runner, where a line is about nothing else.
