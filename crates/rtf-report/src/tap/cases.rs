@@ -3,7 +3,7 @@
 
 use rtf_model::{Record, TestRecord, Verdict};
 
-use super::points::{self, SUBTEST, description};
+use super::syntax::{SUBTEST, description};
 use super::yaml::Yaml;
 use crate::cases::{CaseResult, TestCases};
 use crate::explain::{self, Extent};
@@ -114,7 +114,7 @@ impl Subtests<'_> {
     fn explain(&self, text: &mut String, level: usize, case: &CaseResult<'_>) {
         let Some(verdict) = case.verdict() else { return };
         let mut yaml = Yaml::new(text, level * SUBTEST);
-        yaml.number("duration_ms", points::millis(case.duration));
+        yaml.duration(case.duration);
         yaml.text("verdict", verdict.as_str());
         yaml.text("severity", if verdict == Verdict::Failed { "fail" } else { "error" });
         yaml.text("message", case.reason());

@@ -7,6 +7,7 @@
 
 mod cases;
 mod points;
+mod syntax;
 mod yaml;
 
 use std::io::{self, Write};

@@ -1,17 +1,13 @@
 //! Test points and what stands below them.
 
-use std::time::Duration;
-
 use rtf_model::{Location, Record, Significance, SuiteRecord, TestRecord, Verdict};
 
 use super::cases;
+use super::syntax::{SUBTEST, description};
 use super::yaml::Yaml;
 use crate::cases::TestCases;
 use crate::explain::{self, Extent};
-use crate::{escape, known_failure, words};
-
-/// A subtest is written four columns further in than its parent.
-pub(super) const SUBTEST: usize = 4;
+use crate::{known_failure, words};
 
 /// Maximum number of output lines.
 const OUTPUT_LINES: usize = 50;
@@ -46,7 +42,7 @@ pub(super) fn test(text: &mut String, number: usize, record: &Record, test: &Tes
     };
     *text += &format!("{indent}{ok} {number} - {name}{todo}\n");
     let mut yaml = Yaml::new(text, SUBTEST);
-    yaml.number("duration_ms", millis(test.duration()));
+    yaml.duration(test.duration());
     if let Some(reason) = &red_reason {
         yaml.text("verdict", verdict.as_str());
         yaml.text("severity", "fail");
@@ -105,7 +101,7 @@ pub(super) fn suite(text: &mut String, number: usize, record: &Record, suite: &S
     let mut yaml = Yaml::new(text, 0);
     if let Some(started) = suite.started {
         let end = suite.finished.unwrap_or(record.last_at);
-        yaml.number("duration_ms", millis(end.since(started)));
+        yaml.duration(end.since(started));
     }
     if !well {
         let total = words::count(total as u64, "test");
@@ -113,13 +109,4 @@ pub(super) fn suite(text: &mut String, number: usize, record: &Record, suite: &S
         yaml.lines("problems", problems);
     }
     yaml.end();
-}
-
-pub(super) fn millis(duration: Duration) -> f64 {
-    duration.as_micros() as f64 / 1000.0
-}
-
-/// One line in which `#` does not begin a directive.
-pub(super) fn description(text: &str) -> String {
-    escape::line(text).replace('\\', "\\\\").replace('#', "\\#")
 }

@@ -2,6 +2,8 @@
 //! reads as well: texts of one line have the quotes of JSON, which are YAML's
 //! too, and longer ones are blocks; so nothing in them has a meaning.
 
+use std::time::Duration;
+
 use crate::escape;
 
 /// A block of diagnostics, begun with its first entry.
@@ -30,6 +32,11 @@ impl<'a> Yaml<'a> {
     /// `key: 1.5`.
     pub fn number(&mut self, key: &str, value: f64) {
         self.line(&format!("{key}: {value}"));
+    }
+
+    /// `duration_ms: 1.5`.
+    pub fn duration(&mut self, duration: Duration) {
+        self.number("duration_ms", duration.as_micros() as f64 / 1000.0);
     }
 
     /// `key: "text"`; nothing when the text is empty.
