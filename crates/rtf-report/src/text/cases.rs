@@ -5,7 +5,6 @@ use std::collections::HashMap;
 use rtf_model::{AttemptRecord, CaseId, CaseRecord};
 
 use super::lines::TextLines;
-use super::tests::parameters;
 use crate::{escape, explain, words};
 
 /// A case is written this many columns further in than the one that contains it.
@@ -48,7 +47,7 @@ fn show_case(lines: &mut TextLines, case: &CaseRecord, details: &[String]) {
     lines.at(indent, &format!("case {}: {result}", escape::line(&case.start.name)));
     let indent = indent + INDENT;
     lines.fact(indent, "tags", &case.start.tags.join(" "));
-    parameters(lines, indent, &case.start.parameters);
+    lines.parameters(indent, &case.start.parameters);
     if let Some(reason) = case.reason() {
         lines.fact(indent, "reason", reason);
     }

@@ -2,6 +2,8 @@
 
 use std::io::{self, Write};
 
+use rtf_model::Parameter;
+
 use crate::escape;
 use crate::explain::{self, Tone};
 
@@ -25,6 +27,13 @@ impl TextLines {
             let sink = &mut |_, line: &str| self.at(indent, line);
             explain::block(Tone::Plain, value, &format!("{label}: "), sink);
         }
+    }
+
+    /// The parameters of a test or case, on one line.
+    pub fn parameters(&mut self, indent: usize, parameters: &[Parameter]) {
+        let pair = |parameter: &Parameter| format!("{}={}", parameter.name, parameter.value);
+        let pairs: Vec<_> = parameters.iter().map(pair).collect();
+        self.fact(indent, "parameters", &pairs.join(", "));
     }
 
     /// Text of several lines, each behind a bar.

@@ -1,6 +1,6 @@
 //! Tests in the text report.
 
-use rtf_model::{AttemptRecord, MessageKind, Parameter, Record, TestRecord};
+use rtf_model::{AttemptRecord, MessageKind, Record, TestRecord};
 
 use super::cases;
 use super::lines::TextLines;
@@ -15,7 +15,7 @@ pub(super) fn show(lines: &mut TextLines, record: &Record, test: &TestRecord) {
     lines.fact(4, "tags", &plan.tags.join(" "));
     let verdict = test.final_verdict();
     lines.at(4, &format!("verdict: {verdict}"));
-    parameters(lines, 4, &plan.parameters);
+    lines.parameters(4, &plan.parameters);
     mark(lines, record, test);
     if let Some(reason) = test.reason() {
         lines.fact(4, "reason", cause::short(record, reason));
@@ -40,11 +40,6 @@ fn mark(lines: &mut TextLines, record: &Record, test: &TestRecord) {
     }
     let facts = test.plan.expected.as_deref().map(known_failure::facts);
     facts.iter().flatten().for_each(|(label, text)| lines.fact(4, label, text));
-}
-
-pub(super) fn parameters(lines: &mut TextLines, indent: usize, parameters: &[Parameter]) {
-    let pair = |parameter: &Parameter| format!("{}={}", parameter.name, parameter.value);
-    lines.fact(indent, "parameters", &parameters.iter().map(pair).collect::<Vec<_>>().join(", "));
 }
 
 fn show_attempt(lines: &mut TextLines, test: &TestRecord, attempt: &AttemptRecord) {
