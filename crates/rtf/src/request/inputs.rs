@@ -195,7 +195,7 @@ fn tests_to_rerun(
         if !verdicts.iter().any(|wanted| wanted.matches(record, test)) {
             continue;
         }
-        let Some((suite, test_name)) = name(record, test) else { continue };
+        let Some((suite, test_name)) = past_run::names(record, test) else { continue };
         if let Some(paths) = failed_cases::of_test(test) {
             cases.push((suite.clone(), test_name.clone(), paths));
         }
@@ -207,12 +207,6 @@ fn tests_to_rerun(
         return Err(Failure::input(error));
     }
     Ok((names, cases))
-}
-
-/// The names of a test's suite and of the test.
-pub(super) fn name(record: &Record, test: &TestRecord) -> Option<(String, String)> {
-    let suite = record.suites.get(test.plan.suite.index())?;
-    Some((suite.plan.name.clone(), test.plan.name.clone()))
 }
 
 impl RerunVerdict {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use rtf_model::Record;
+use rtf_model::{Record, TestRecord};
 use rtf_report::journal::{self, JournalError};
 use rtf_report::run_dir;
 
@@ -49,4 +49,10 @@ pub fn refuse_damaged(run: &str, record: &Record) -> Result<(), Failure> {
 /// What to do about a damaged journal.
 pub fn damage_hint(run: &str) -> String {
     format!("`rtf show {}` shows the readable part", shell_words::quote(run))
+}
+
+/// The names of a test's suite and of the test.
+pub(super) fn names(record: &Record, test: &TestRecord) -> Option<(String, String)> {
+    let suite = record.suites.get(test.plan.suite.index())?;
+    Some((suite.plan.name.clone(), test.plan.name.clone()))
 }

@@ -9,7 +9,6 @@ use rtf_history::StoreError;
 use rtf_model::{Diagnostic, Manifest, Record};
 use rtf_plan::select::{PastResult, PastResults, Shard, ShardBy, TestOrder};
 
-use super::inputs::name;
 use super::past_run;
 use crate::cli::{InputArgs, OrderOption};
 use crate::error::Failure;
@@ -107,5 +106,5 @@ fn no_durations(error: StoreError) -> Failure {
 fn durations(record: &Record) -> PastResults {
     let past = |duration: Duration| PastResult { failed: false, duration: Some(duration) };
     let tests = record.tests.iter();
-    tests.filter_map(|test| Some((name(record, test)?, past(test.duration())))).collect()
+    tests.filter_map(|test| Some((past_run::names(record, test)?, past(test.duration())))).collect()
 }
