@@ -7,8 +7,9 @@ use rtf_monitor::Formula;
 
 use super::bound::{Bound, Bounds};
 use super::file::{DeclaredJoint, JOINT, LimitsFile, RATE};
+use super::joint::ModelJoint;
 use super::limit::{DeclaredLimit, Input, Quantity};
-use super::model::{Model, ModelJoint};
+use super::model::Model;
 use super::{CompiledEnvelope, EnvelopeMonitor, EnvelopeRequest};
 use crate::suite::{SourceText, Span, Spanned};
 use crate::wording::{quoted, suggest};

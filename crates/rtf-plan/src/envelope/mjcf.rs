@@ -2,8 +2,8 @@
 
 use roxmltree::Node;
 
+use super::joint::{ModelJoint, PRISMATIC, REVOLUTE, magnitude, numbers, position, range, report};
 use super::limit::Quantity;
-use super::model::{ModelJoint, PRISMATIC, REVOLUTE, magnitude, numbers, position, range, report};
 use crate::suite::ElementReader;
 
 /// The class without a name.

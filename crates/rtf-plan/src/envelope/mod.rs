@@ -6,6 +6,7 @@
 mod bound;
 mod compile;
 mod file;
+mod joint;
 mod limit;
 mod mjcf;
 mod model;

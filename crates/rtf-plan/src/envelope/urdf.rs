@@ -2,8 +2,8 @@
 
 use roxmltree::Node;
 
+use super::joint::{ModelJoint, PRISMATIC, REVOLUTE, magnitude, number, position, range, report};
 use super::limit::Quantity;
-use super::model::{ModelJoint, PRISMATIC, REVOLUTE, magnitude, number, position, range, report};
 use crate::suite::ElementReader;
 
 const XACRO: &str = "http://www.ros.org/wiki/xacro";
