@@ -14,6 +14,7 @@ mod duration;
 mod env;
 pub mod episode_reference;
 mod fault;
+mod fault_quantity;
 mod fault_types;
 mod fixture;
 pub mod fixture_reference;

@@ -3,8 +3,9 @@
 use roxmltree::Node;
 use rtf_model::{Diagnostic, ValuesFault};
 
+use super::fault_quantity::share;
 use super::reader::ElementReader;
-use super::{DeclaredEffect, Span, fault};
+use super::{DeclaredEffect, Span};
 
 /// The attributes of this kind.
 pub(super) const ATTRIBUTES: [&str; 9] =
@@ -50,7 +51,7 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option
         offset,
         noise,
         freezes,
-        loss_ppm: fault::share(reader, node, "loss"),
+        loss_ppm: share(reader, node, "loss"),
         delay_us: u64::try_from(delay).unwrap_or(u64::MAX),
         seed: reader.number(node, "seed", 0).unwrap_or(0),
     };
