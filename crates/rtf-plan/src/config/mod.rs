@@ -17,6 +17,7 @@ mod quarantine;
 mod run_config;
 mod schema;
 mod toml_reader;
+mod toml_value;
 mod unknown_profile;
 
 pub use effective::{Setting, SettingsQuery, effective_settings};

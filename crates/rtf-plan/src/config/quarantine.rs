@@ -3,7 +3,7 @@
 use rtf_model::{Diagnostic, Label, Verdict};
 use toml::de::{DeTable, DeValue};
 
-use super::toml_reader::{TomlReader, TomlValue, span};
+use super::toml_value::{TomlReader, TomlValue, span};
 use crate::select::{self, Filter};
 use crate::suite::{DeclaredKnownFailure, SourceText, Span, Spanned, parse_day, parse_verdict};
 use crate::wording::{nearest, quoted};

@@ -5,14 +5,10 @@ use toml::de::{DeTable, DeValue};
 
 use super::keys::{KEYS, Key, NameKind, REPORTS, ValueFormat};
 use super::quarantine::{self, QUARANTINE, Quarantine};
+use super::toml_value::{TomlKey, TomlReader, TomlValue, is_text, scalar, span};
 use super::unknown_profile::suggest_profile;
 use crate::suite::{SourceText, Span, Spanned, is_reserved, parse_duration};
 use crate::wording::{nearest, quoted};
-
-/// A key and its position.
-pub(super) type TomlKey<'a> = toml::Spanned<toml::de::DeString<'a>>;
-/// A value and its position.
-pub(super) type TomlValue<'a> = toml::Spanned<DeValue<'a>>;
 
 /// One value of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -90,19 +86,6 @@ pub fn parse(source: &SourceText, problems: &mut Vec<Diagnostic>) -> ParsedConfi
         reader.check_default_profile(name, &parsed.profiles);
     }
     parsed
-}
-
-/// Reads the values of a file.
-pub(super) struct TomlReader<'a> {
-    /// The text of the file.
-    pub source: &'a SourceText,
-    /// The problems found so far.
-    pub problems: &'a mut Vec<Diagnostic>,
-}
-
-/// Returns the position of a key or a value.
-pub(super) fn span<T>(value: &toml::Spanned<T>) -> Span {
-    Span::new(value.span())
 }
 
 impl TomlReader<'_> {
@@ -253,12 +236,6 @@ impl TomlReader<'_> {
         }
     }
 
-    /// Reports an invalid value.
-    pub fn wrong(&mut self, key: &str, value: &TomlValue<'_>, expected: &str) {
-        let problem = Diagnostic::error("invalid-value", format!("`{key}` has to be {expected}"));
-        self.problems.push(problem.label(self.source.label(span(value), "")));
-    }
-
     fn unknown(&mut self, key: &TomlKey<'_>, prefix: &str, keys: &[Key]) {
         let name = key.get_ref().as_ref();
         let mut known: Vec<&str> = keys.iter().map(|known| known.name).collect();
@@ -288,22 +265,5 @@ impl TomlReader<'_> {
         let problem =
             Diagnostic::error("unknown-profile", format!("there is no profile `{}`", name.value));
         self.problems.push(suggest_profile(problem.label(label), &name.value, known));
-    }
-}
-
-fn is_text(value: &TomlValue<'_>) -> bool {
-    matches!(value.get_ref(), DeValue::String(_))
-}
-
-/// Returns the text of a scalar value; numbers keep their notation.
-fn scalar(value: &DeValue<'_>) -> Option<String> {
-    match value {
-        DeValue::String(text) => Some(text.to_string()),
-        DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix())
-            .ok()
-            .map(|number| number.to_string()),
-        DeValue::Float(number) => Some(number.as_str().to_owned()),
-        DeValue::Boolean(truth) => Some(truth.to_string()),
-        _ => None,
     }
 }

@@ -1,0 +1,50 @@
+//! The keys and values of a TOML file with their positions, and the report of an invalid one.
+
+use rtf_model::Diagnostic;
+use toml::de::DeValue;
+
+use crate::suite::{SourceText, Span};
+
+/// A key and its position.
+pub(super) type TomlKey<'a> = toml::Spanned<toml::de::DeString<'a>>;
+/// A value and its position.
+pub(super) type TomlValue<'a> = toml::Spanned<DeValue<'a>>;
+
+/// Reads the values of a file.
+pub(super) struct TomlReader<'a> {
+    /// The text of the file.
+    pub source: &'a SourceText,
+    /// The problems found so far.
+    pub problems: &'a mut Vec<Diagnostic>,
+}
+
+impl TomlReader<'_> {
+    /// Reports an invalid value.
+    pub fn wrong(&mut self, key: &str, value: &TomlValue<'_>, expected: &str) {
+        let problem = Diagnostic::error("invalid-value", format!("`{key}` has to be {expected}"));
+        self.problems.push(problem.label(self.source.label(span(value), "")));
+    }
+}
+
+/// Returns the position of a key or a value.
+pub(super) fn span<T>(value: &toml::Spanned<T>) -> Span {
+    Span::new(value.span())
+}
+
+/// Checks whether a value is a text.
+pub(super) fn is_text(value: &TomlValue<'_>) -> bool {
+    matches!(value.get_ref(), DeValue::String(_))
+}
+
+/// Returns the text of a scalar value; numbers keep their notation.
+pub(super) fn scalar(value: &DeValue<'_>) -> Option<String> {
+    match value {
+        DeValue::String(text) => Some(text.to_string()),
+        DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix())
+            .ok()
+            .map(|number| number.to_string()),
+        DeValue::Float(number) => Some(number.as_str().to_owned()),
+        DeValue::Boolean(truth) => Some(truth.to_string()),
+        _ => None,
+    }
+}
