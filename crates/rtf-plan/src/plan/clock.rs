@@ -6,7 +6,6 @@ use std::time::Duration;
 
 use rtf_model::{Diagnostic, FixtureId};
 
-use super::fixture::{RESTART_DELAY, RESTARTS};
 use super::plugin_planner::PluginPlanner;
 use super::plugin_search::shipped;
 use super::use_site::UseSite;
@@ -61,8 +60,8 @@ fn fixture(
         env: Vec::new(),
         limits: defaults::FIXTURE,
         reset: None,
-        restarts: RESTARTS,
-        restart_delay: RESTART_DELAY,
+        restarts: defaults::RESTARTS,
+        restart_delay: defaults::RESTART_DELAY,
         check_every: Some(CHECK_EVERY),
     })
 }

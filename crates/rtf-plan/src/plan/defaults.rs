@@ -22,5 +22,11 @@ pub(crate) const FIXTURE: FixtureLimits = FixtureLimits {
     teardown: Duration::from_secs(30),
 };
 
+/// The maximum number of restarts of a fixture after a collapse.
+pub(super) const RESTARTS: u32 = 3;
+
+/// The delay before the first of them.
+pub(super) const RESTART_DELAY: Duration = Duration::from_millis(100);
+
 /// The limit of a hook.
 pub(crate) const HOOK: Duration = Duration::from_secs(30);

@@ -6,7 +6,6 @@ use rtf_model::{
     Diagnostic, FaultAction, FaultConfig, FaultTarget, FaultsConfig, FixtureId, Location,
 };
 
-use super::fixture::{RESTART_DELAY, RESTARTS};
 use super::hosts::FAULTS;
 use super::of_tests::OfTests;
 use super::own_processes::SuiteFixtures;
@@ -87,8 +86,8 @@ pub(super) fn plan(
         env: Vec::new(),
         limits: defaults::FIXTURE,
         reset: None,
-        restarts: RESTARTS,
-        restart_delay: RESTART_DELAY,
+        restarts: defaults::RESTARTS,
+        restart_delay: defaults::RESTART_DELAY,
         check_every: None,
     });
 }

@@ -23,8 +23,6 @@ use crate::suite::{
 };
 
 // `spec/suite.md` lists these defaults.
-pub(super) const RESTARTS: u32 = 3;
-pub(super) const RESTART_DELAY: Duration = Duration::from_millis(100);
 const READY_EVERY: Duration = Duration::from_millis(100);
 const ALIVE_EVERY: Duration = Duration::from_secs(1);
 const PROBE_TIMEOUT: Duration = Duration::from_secs(1);
@@ -126,8 +124,8 @@ fn plan(
         env: fixture.env,
         limits,
         reset,
-        restarts: fixture.restarts.unwrap_or(RESTARTS),
-        restart_delay: fixture.restart_delay.unwrap_or(RESTART_DELAY),
+        restarts: fixture.restarts.unwrap_or(defaults::RESTARTS),
+        restart_delay: fixture.restart_delay.unwrap_or(defaults::RESTART_DELAY),
         check_every,
     })
 }

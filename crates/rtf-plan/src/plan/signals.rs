@@ -9,7 +9,6 @@ use rtf_model::{
     SignalSource, SignalTime, SignalsConfig, TestSignal,
 };
 
-use super::fixture::{RESTART_DELAY, RESTARTS};
 use super::hosts::SIGNALS;
 use super::monitors;
 use super::names::UniqueNames;
@@ -90,8 +89,8 @@ pub(super) fn plan(
         env: Vec::new(),
         limits: defaults::FIXTURE,
         reset,
-        restarts: RESTARTS,
-        restart_delay: RESTART_DELAY,
+        restarts: defaults::RESTARTS,
+        restart_delay: defaults::RESTART_DELAY,
         check_every: None,
     });
 }
