@@ -9,11 +9,12 @@ use rtf_model::{Diagnostic, Severity};
 use super::checks::{CheckAnswer, CheckGroup, PluginChecks};
 use super::context::{PlanContext, parent_dir};
 use super::framework_tests::FrameworkTests;
-use super::inputs::{self, InputFile, ResolvedInput};
+use super::input_file::{DirectPlugin, InputFile};
+use super::inputs::{self, ResolvedInput};
 use super::matrix::MatrixExpander;
 use super::named_tests;
 use super::names::UniqueNames;
-use super::suite::{DirectPlugin, plan_direct_plugins, plan_suite};
+use super::suite::{SuiteDraft, plan_direct_plugins, plan_suite};
 use super::{Compatibility, InputPath, Options, Plan, SuitePlan};
 use crate::config;
 use crate::suite::{self, SourceMap, SourceText};
@@ -37,15 +38,6 @@ pub struct PlanDraft {
     problems: Vec<Diagnostic>,
     sources: SourceMap,
     checks: PluginChecks,
-}
-
-/// A suite whose plug-ins have not been checked yet.
-#[derive(Debug)]
-pub(super) struct SuiteDraft {
-    /// The plan.
-    pub plan: SuitePlan,
-    /// Its tests of other frameworks.
-    pub frameworks: FrameworkTests,
 }
 
 impl PlanDraft {

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use rtf_model::Diagnostic;
 
 use super::hosts::{self, HOSTS};
+use super::input_file::{DirectPlugin, InputFile};
 use super::plugin_search::{self, PluginFinder};
 use super::search_scope::SearchScope;
-use super::suite::DirectPlugin;
 use super::{InputPath, Options};
 use crate::suite::{is_replay_suite, is_suite_file};
 use crate::wording::quoted;
@@ -31,15 +31,6 @@ impl ResolvedInput {
     fn suite(file: InputFile) -> Self {
         Self::Suite { file, only: Vec::new() }
     }
-}
-
-/// A file.
-#[derive(Debug)]
-pub(super) struct InputFile {
-    /// The absolute path.
-    pub path: PathBuf,
-    /// The path as the user would write it.
-    pub name: String,
 }
 
 /// The content of a directory to run.

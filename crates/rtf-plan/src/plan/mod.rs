@@ -24,6 +24,7 @@ mod framework_tests;
 mod frameworks;
 mod hook;
 mod hosts;
+mod input_file;
 mod inputs;
 mod installed;
 mod known_failure;

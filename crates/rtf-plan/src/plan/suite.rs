@@ -6,10 +6,9 @@ use std::sync::Arc;
 use rtf_model::{SuiteId, TestId};
 
 use super::context::{PlanContext, parent_dir};
-use super::draft::SuiteDraft;
 use super::faults::DeclaredFaults;
-use super::hosts::HostKind;
-use super::inputs::InputFile;
+use super::framework_tests::FrameworkTests;
+use super::input_file::{DirectPlugin, InputFile};
 use super::names::UniqueNames;
 use super::plugin_planner::PluginPlanner;
 use super::plugin_search::base_name;
@@ -25,6 +24,15 @@ use crate::suite::{DeclaredMiddleware, DeclaredSuite, DeclaredTest, FixtureKind,
 
 /// The name of the suite of the plug-ins that are given directly.
 const DIRECT_PLUGINS: &str = "plug-ins";
+
+/// A suite whose plug-ins have not been checked yet.
+#[derive(Debug)]
+pub(super) struct SuiteDraft {
+    /// The plan.
+    pub plan: SuitePlan,
+    /// Its tests of other frameworks.
+    pub frameworks: FrameworkTests,
+}
 
 /// Plans a suite file. [`Plan::new`](super::Plan::new) assigns the ids.
 pub(super) fn plan_suite(
@@ -127,17 +135,6 @@ fn isolation(suite: &DeclaredSuite) -> Isolation {
 
 fn stem(path: &Path) -> String {
     path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
-}
-
-/// A plug-in that is given directly: by name, or as a file of a directory.
-#[derive(Debug)]
-pub(super) struct DirectPlugin {
-    /// The file.
-    pub file: InputFile,
-    /// The type.
-    pub kind: &'static HostKind,
-    /// Whether it is a file of an input directory. If it contains no test, it is omitted.
-    pub from_dir: bool,
 }
 
 /// Plans one suite of all plug-ins that are given directly.
