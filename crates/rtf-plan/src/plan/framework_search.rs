@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use rtf_model::Diagnostic;
 
 use super::frameworks::TestSubject;
-use super::plugin_search::user_dirs;
 use super::program::{list, searched_path};
 use super::search_scope::SearchScope;
 use crate::wording::nearest;
@@ -13,7 +12,7 @@ use crate::wording::nearest;
 /// Finds the path of this exact name. A program without a directory is also searched in
 /// `PATH`.
 pub(super) fn find(name: &str, subject: TestSubject, scope: &SearchScope<'_>) -> Option<PathBuf> {
-    let mut dirs = user_dirs(scope);
+    let mut dirs = scope.user_dirs();
     if is_in_path(name, subject) {
         dirs.extend(scope.dirs("PATH"));
     }
@@ -33,7 +32,7 @@ pub(super) fn not_found(
     scope: &SearchScope<'_>,
     suggest: bool,
 ) -> Diagnostic {
-    let dirs = user_dirs(scope);
+    let dirs = scope.user_dirs();
     let noun = subject.noun();
     if let Some(other) = dirs.iter().map(|dir| dir.join(name)).find(|path| path.exists()) {
         return wrong_kind(name, subject, &other);

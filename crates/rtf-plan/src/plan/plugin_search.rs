@@ -95,7 +95,7 @@ impl PluginFinder {
 
 /// Returns the directories in which plug-ins are searched, in order.
 fn search_dirs(kind: &HostKind, scope: &SearchScope<'_>) -> Vec<PathBuf> {
-    let mut dirs = user_dirs(scope);
+    let mut dirs = scope.user_dirs();
     dirs.extend(kind.library_path.map(|name| scope.dirs(name)).unwrap_or_default());
     dirs.extend(scope.runner.prefix().map(|prefix| prefix.join("lib/rtf/plugins")));
     dirs.extend(shipped_dir(scope));
@@ -120,15 +120,7 @@ pub(super) fn shipped(name: &str, scope: &SearchScope<'_>) -> Option<(PathBuf, &
 /// Checks whether a file is in a directory for the user's plug-ins, and not just
 /// a library of the platform.
 pub(super) fn is_in_user_dir(file: &Path, scope: &SearchScope<'_>) -> bool {
-    user_dirs(scope).iter().any(|dir| file.starts_with(dir))
-}
-
-/// Returns the directories for the user's plug-ins.
-pub(super) fn user_dirs(scope: &SearchScope<'_>) -> Vec<PathBuf> {
-    let mut dirs = vec![scope.dir.to_path_buf()];
-    dirs.extend(scope.fallback_dir.map(Path::to_path_buf));
-    dirs.extend(scope.dirs("RTF_PLUGIN_PATH"));
-    dirs
+    scope.user_dirs().iter().any(|dir| file.starts_with(dir))
 }
 
 /// Finds the directory of the shipped fixture managers: in the prefix, or in the

@@ -70,6 +70,14 @@ impl SearchScope<'_> {
             .collect()
     }
 
+    /// Returns the directories for the user's plug-ins.
+    pub fn user_dirs(&self) -> Vec<PathBuf> {
+        let mut dirs = vec![self.dir.to_path_buf()];
+        dirs.extend(self.fallback_dir.map(Path::to_path_buf));
+        dirs.extend(self.dirs("RTF_PLUGIN_PATH"));
+        dirs
+    }
+
     /// Returns the directory to which relative paths in a variable refer: the
     /// suite's for a variable of the suite, else the current one.
     pub fn base(&self, name: &str) -> &Path {
