@@ -16,7 +16,7 @@ use std::time::Duration;
 use rtf_model::Diagnostic;
 use serde::Deserialize;
 
-use super::frameworks::Framework;
+use super::framework_kind::Framework;
 use super::search_scope::SearchScope;
 use super::use_site::{PluginRole, UseSite, UseSites};
 use super::{HostPlan, ListedCase};

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use rtf_model::Diagnostic;
 
-use super::frameworks::TestSubject;
+use super::framework_kind::TestSubject;
 use super::program::{list, searched_path};
 use super::search_scope::SearchScope;
 use crate::wording::nearest;

@@ -8,8 +8,9 @@ use std::sync::Arc;
 use rtf_model::Diagnostic;
 
 use super::checks::{CheckId, PluginChecks, PluginUse};
-use super::frameworks::{self, FRAMEWORKS, Forks};
-use super::hosts::HostKind;
+use super::framework_kind::Forks;
+use super::frameworks::{self, FRAMEWORKS};
+use super::host_kind::HostKind;
 use super::search_scope::SearchScope;
 use super::use_site::{PluginRole, UseSite};
 use super::{

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::hosts::HostKind;
+use super::host_kind::HostKind;
 
 /// A file.
 #[derive(Debug)]

@@ -7,7 +7,7 @@ use std::time::Duration;
 use rtf_model::Diagnostic;
 
 use super::ProbeKind;
-use super::hosts;
+use super::host_kind;
 use super::plugin_search::shipped_dir;
 use super::program::utf8;
 use super::search_scope::SearchScope;
@@ -60,7 +60,7 @@ fn python_program(
     scope: &SearchScope<'_>,
 ) -> Result<Vec<String>, Box<Diagnostic>> {
     let program = shipped_program(program, consequence, scope)?;
-    Ok(vec![utf8(&hosts::python(scope)?)?, utf8(&program)?])
+    Ok(vec![utf8(&host_kind::python(scope)?)?, utf8(&program)?])
 }
 
 fn shipped_program(
@@ -83,7 +83,7 @@ pub(super) fn probe(
     scope: &SearchScope<'_>,
 ) -> Result<ProbeKind, Box<Diagnostic>> {
     let program = shipped_program(PROGRAM, &format!("`{}` cannot be probed", query.kind), scope)?;
-    let mut command = vec![utf8(&hosts::python(scope)?)?];
+    let mut command = vec![utf8(&host_kind::python(scope)?)?];
     if !query.kind.starts_with("ros2-") {
         command.extend(ISOLATED.map(str::to_owned));
     }

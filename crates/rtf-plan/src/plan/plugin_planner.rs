@@ -9,7 +9,7 @@ use rtf_model::Diagnostic;
 
 use super::checks::PluginUse;
 use super::context::PlanContext;
-use super::hosts::HostKind;
+use super::host_kind::HostKind;
 use super::input_file::DirectPlugin;
 use super::plugin_search::{self, PluginFinder};
 use super::program::utf8;

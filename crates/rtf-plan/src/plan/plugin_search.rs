@@ -9,7 +9,8 @@ use rtf_model::Diagnostic;
 
 use super::framework_search;
 use super::frameworks::FRAMEWORKS;
-use super::hosts::{self, HOSTS, HostKind};
+use super::host_kind::HostKind;
+use super::hosts::{self, HOSTS};
 use super::program::list;
 use super::search_scope::SearchScope;
 use super::use_site::PluginRole;
