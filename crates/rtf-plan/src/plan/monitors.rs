@@ -1,11 +1,13 @@
-//! Checks the formulas of monitors against the signals of their suite.
+//! The monitors of a suite: their formulas, checked against its signals, and those of its plan.
 
 use std::ops::Range;
 
-use rtf_model::{Diagnostic, Location, MonitorConfig};
+use rtf_model::{Diagnostic, Location, MonitorConfig, SignalsConfig};
 use rtf_monitor::Formula;
 
+use super::hosts::SIGNALS;
 use super::of_tests::OfTests;
+use super::{FixtureBody, SuitePlan};
 use crate::suite::{DeclaredMonitor, DeclaredSignal, SourceText, episode_reference, position_of};
 use crate::wording::{quoted, suggest};
 
@@ -34,6 +36,20 @@ pub(super) fn plan(
         });
     }
     plans
+}
+
+impl SuitePlan {
+    /// Returns the monitors of its tests.
+    #[must_use]
+    pub fn monitors(&self) -> Vec<MonitorConfig> {
+        let plugins = self.fixtures.iter().rev().filter_map(|fixture| match &fixture.body {
+            FixtureBody::Plugin(plugin) if &*plugin.plugin_type == SIGNALS.name => Some(plugin),
+            _ => None,
+        });
+        // The planner wrote the parameters.
+        let configs = plugins.filter_map(|plugin| serde_json::from_str(&plugin.param).ok());
+        configs.map(|config: SignalsConfig| config.monitors).next().unwrap_or_default()
+    }
 }
 
 struct FormulaCheck<'a> {

@@ -5,12 +5,11 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_model::{
-    Episode, ExpectedFailure, FixtureId, HookId, LearnedLimits, Location, MonitorConfig, Parameter,
-    SignalsConfig, SuiteId, SuitePrepared, TestId, Trigger,
+    Episode, ExpectedFailure, FixtureId, HookId, LearnedLimits, Location, Parameter, SuiteId,
+    SuitePrepared, TestId, Trigger,
 };
 use serde::{Deserialize, Serialize};
 
-use super::hosts::SIGNALS;
 use super::{CaseSelection, ProbePlans, ProcessPlan};
 pub use crate::suite::{
     AfterCollapse, Leaks, LearnPlan, LearnedSides, RequiredResource, Retries, SuiteSettings,
@@ -95,18 +94,6 @@ impl SuitePlan {
     #[must_use]
     pub fn repeats(&self) -> bool {
         self.tests.iter().any(|test| test.settings.repetitions > 1)
-    }
-
-    /// Returns the monitors of its tests.
-    #[must_use]
-    pub fn monitors(&self) -> Vec<MonitorConfig> {
-        let plugins = self.fixtures.iter().rev().filter_map(|fixture| match &fixture.body {
-            FixtureBody::Plugin(plugin) if &*plugin.plugin_type == SIGNALS.name => Some(plugin),
-            _ => None,
-        });
-        // The planner wrote the parameters.
-        let configs = plugins.filter_map(|plugin| serde_json::from_str(&plugin.param).ok());
-        configs.map(|config: SignalsConfig| config.monitors).next().unwrap_or_default()
     }
 }
 
