@@ -1,10 +1,12 @@
-//! Restricts the listed cases of a test to those that a further selection selects.
+//! The listed cases of a test that it runs: restricts them to those that a further selection
+//! selects.
 
-use std::collections::HashSet;
+use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
 
 use rtf_model::protocol::CaseSelector;
 
-use super::ListedCase;
+use super::{CaseSelection, CaseSelectionOrigin, ListedCase, TestPlan};
 
 /// The result of restricting a selection.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -17,16 +19,47 @@ pub(crate) struct NarrowedCases {
     pub excluded: Vec<String>,
 }
 
+impl TestPlan {
+    /// Returns the cases that it runs, if they are known before the run.
+    #[must_use]
+    pub fn known_cases(&self) -> Option<Vec<Cow<'_, ListedCase>>> {
+        let listed = self.listed_cases()?;
+        let Some(selected) = &self.cases else {
+            return Some(listed.iter().map(Cow::Borrowed).collect());
+        };
+        let by_name: HashMap<&str, &ListedCase> =
+            listed.iter().map(|case| (case.name.as_str(), case)).collect();
+        let case = |path: &str| match by_name.get(path) {
+            Some(case) => Cow::Borrowed(*case),
+            None => Cow::Owned(ListedCase { name: path.to_owned(), ..ListedCase::default() }),
+        };
+        Some(selected.paths().map(case).collect())
+    }
+
+    /// Restricts a test with listed cases to those that a further selection selects, too.
+    pub(crate) fn narrow_cases(&mut self, selection: CaseSelection) -> NarrowedCases {
+        let listed = self.listed_cases().unwrap_or_default();
+        let current: Vec<String> = match &self.cases {
+            Some(cases) => cases.paths().map(str::to_owned).collect(),
+            None => listed.iter().map(|case| case.name.clone()).collect(),
+        };
+        let mut narrowed = narrow(listed, &current, &selection.selectors);
+        if selection.origin == CaseSelectionOrigin::Rerun {
+            // The error of an unknown case is then the verdict of the test.
+            narrowed.paths.append(&mut narrowed.unknown);
+        }
+        let paths = narrowed.paths.iter().map(String::as_str);
+        self.select_cases(CaseSelection::of_names(paths));
+        narrowed
+    }
+}
+
 /// Returns the cases of the current selection that any of `selectors` selects.
 ///
 /// A path selects the listed case of this name. If there is none, it selects the cases
 /// below it, or is that of a case in a listed one: a section or a subtest, which no
 /// framework lists.
-pub(super) fn narrow(
-    listed: &[ListedCase],
-    current: &[String],
-    selectors: &[CaseSelector],
-) -> NarrowedCases {
+fn narrow(listed: &[ListedCase], current: &[String], selectors: &[CaseSelector]) -> NarrowedCases {
     let cases = Cases {
         listed: listed.iter().map(|case| case.name.as_str()).collect(),
         current,

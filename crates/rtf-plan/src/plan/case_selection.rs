@@ -1,12 +1,6 @@
-//! The cases that a test runs, and the origin of their selection.
-
-use std::borrow::Cow;
-use std::collections::HashMap;
+//! A selection of the cases of a test, and its origin.
 
 use rtf_model::protocol::CaseSelector;
-
-use super::case_narrowing::{self, NarrowedCases};
-use super::{ListedCase, TestPlan};
 
 /// The cases that a test runs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -58,39 +52,4 @@ pub enum CaseSelectionOrigin {
     /// A rerun of failed cases: a host that cannot select cases runs all of them; a case
     /// that does not exist is an error.
     Rerun,
-}
-
-impl TestPlan {
-    /// Returns the cases that it runs, if they are known before the run.
-    #[must_use]
-    pub fn known_cases(&self) -> Option<Vec<Cow<'_, ListedCase>>> {
-        let listed = self.listed_cases()?;
-        let Some(selected) = &self.cases else {
-            return Some(listed.iter().map(Cow::Borrowed).collect());
-        };
-        let by_name: HashMap<&str, &ListedCase> =
-            listed.iter().map(|case| (case.name.as_str(), case)).collect();
-        let case = |path: &str| match by_name.get(path) {
-            Some(case) => Cow::Borrowed(*case),
-            None => Cow::Owned(ListedCase { name: path.to_owned(), ..ListedCase::default() }),
-        };
-        Some(selected.paths().map(case).collect())
-    }
-
-    /// Restricts a test with listed cases to those that a further selection selects, too.
-    pub(crate) fn narrow_cases(&mut self, selection: CaseSelection) -> NarrowedCases {
-        let listed = self.listed_cases().unwrap_or_default();
-        let current: Vec<String> = match &self.cases {
-            Some(cases) => cases.paths().map(str::to_owned).collect(),
-            None => listed.iter().map(|case| case.name.clone()).collect(),
-        };
-        let mut narrowed = case_narrowing::narrow(listed, &current, &selection.selectors);
-        if selection.origin == CaseSelectionOrigin::Rerun {
-            // The error of an unknown case is then the verdict of the test.
-            narrowed.paths.append(&mut narrowed.unknown);
-        }
-        let paths = narrowed.paths.iter().map(String::as_str);
-        self.select_cases(CaseSelection::of_names(paths));
-        narrowed
-    }
 }
