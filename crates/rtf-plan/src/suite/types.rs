@@ -4,11 +4,11 @@ use std::time::Duration;
 
 use jiff::Timestamp;
 use jiff::civil::Date;
-use rtf_model::{Trigger, Verdict};
+use rtf_model::Verdict;
 
 use super::{
-    Combination, DeclaredEnvelope, DeclaredFault, DeclaredFixture, DeclaredMatrix, DeclaredMonitor,
-    DeclaredSource, FixtureReferences, Span, Spanned,
+    Combination, DeclaredEnvelope, DeclaredFault, DeclaredFixture, DeclaredHook, DeclaredMatrix,
+    DeclaredMonitor, DeclaredPlugin, DeclaredSource, FixtureReferences, Span, Spanned,
 };
 
 /// The contents of a suite file.
@@ -297,17 +297,6 @@ pub struct Retries {
     pub delay: Duration,
 }
 
-/// A reference to a plug-in.
-#[derive(Clone, Debug)]
-pub struct DeclaredPlugin {
-    /// The plug-in's name.
-    pub name: Spanned<String>,
-    /// The plug-in's type.
-    pub plugin_type: Option<Spanned<String>>,
-    /// The parameter string.
-    pub param: String,
-}
-
 /// The limits of tests; `None` for the default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct DeclaredLimits {
@@ -347,28 +336,4 @@ pub enum Leaks {
     Report,
     /// In addition, a test that passed becomes an error.
     Fail,
-}
-
-/// A `<hook>`.
-#[derive(Clone, Debug)]
-pub struct DeclaredHook {
-    /// The name.
-    pub name: Option<Spanned<String>>,
-    /// Its triggers without duplicates; empty if all are unknown, which was reported.
-    pub on: Vec<Trigger>,
-    /// The plug-in or command.
-    pub body: HookKind,
-    /// Environment variables in addition to the suite's.
-    pub env: Vec<(String, String)>,
-    /// The limit.
-    pub timeout: Option<Duration>,
-}
-
-/// The kinds of a `<hook>`.
-#[derive(Clone, Debug)]
-pub enum HookKind {
-    /// A test plug-in.
-    Plugin(DeclaredPlugin),
-    /// A program and its arguments; empty if they are invalid, which was reported.
-    Command(Spanned<Vec<String>>),
 }
