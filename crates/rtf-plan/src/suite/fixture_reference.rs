@@ -3,15 +3,11 @@
 //! The planner checks references, because only it knows all fixtures. `rtf-engine` replaces
 //! them whenever a process starts.
 
-use rtf_model::Diagnostic;
-
-use super::reader::ElementReader;
-use super::reference::{ReferenceSyntax, record_each};
-use super::{Span, Spanned};
+use super::Span;
 use crate::placeholder::{Segment, segments};
 
-const OPEN: &str = "${fixture:";
-const SYNTAX: ReferenceSyntax = ReferenceSyntax { open: OPEN, code: "invalid-fixture-value" };
+/// The text that opens a reference.
+pub(super) const OPEN: &str = "${fixture:";
 
 /// A reference to a value of a fixture.
 #[derive(Clone, Debug)]
@@ -77,39 +73,6 @@ pub fn names(text: &str) -> impl Iterator<Item = &str> {
         Segment::Text(_) | Segment::Unclosed(_) => None,
     });
     names.collect::<Vec<_>>().into_iter()
-}
-
-/// Records the references of a value and reports malformed ones.
-pub(super) fn check(reader: &mut ElementReader<'_>, what: &str, value: &Spanned<String>) {
-    if !mentions(&value.value) {
-        return;
-    }
-    reader.fixture_references.any = true;
-    record_each(reader, SYNTAX, (what, value), record);
-}
-
-fn record(reader: &mut ElementReader<'_>, name: &str, span: Span) {
-    let user = reader.user;
-    let problem = match name.rsplit_once('.') {
-        Some((fixture, value)) if user != ReferenceUser::Suite => {
-            let (fixture, value) = (fixture.to_owned(), value.to_owned());
-            let reference = FixtureReference { fixture, value, span, user };
-            return reader.fixture_references.found.push(reference);
-        }
-        Some(_) => {
-            let message = "a suite's own settings cannot use the value of a fixture: they also \
-                           apply to its fixtures";
-            Diagnostic::error("invalid-fixture-value", message)
-                .hint("write it in the tests and hooks that need it")
-        }
-        None => {
-            let message = format!("`{name}` names no value of a fixture");
-            Diagnostic::error("invalid-fixture-value", message)
-                .hint(format!("write `{OPEN}NAME.VALUE}}`"))
-        }
-    };
-    let label = reader.source.label(span, "");
-    reader.report(problem.label(label));
 }
 
 #[cfg(test)]

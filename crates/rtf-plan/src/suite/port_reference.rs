@@ -3,24 +3,31 @@
 //! `rtf-engine` replaces it by a number when the suite starts.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
-use rtf_model::{Diagnostic, SuitePort};
-
-use super::reader::ElementReader;
-use super::reference::{ReferenceSyntax, position, record_each};
-use super::{Span, Spanned};
+use super::Span;
 use crate::placeholder::{Segment, segments};
-use crate::wording::nearest;
 
-const OPEN: &str = "${port:";
-const SYNTAX: ReferenceSyntax = ReferenceSyntax { open: OPEN, code: "invalid-port" };
-const MAX_NAME_LENGTH: usize = 32;
+/// The text that opens a reference.
+pub(super) const OPEN: &str = "${port:";
 
 /// The ports of a suite: name and first use, by environment variable.
 #[derive(Debug, Default)]
 pub(super) struct Ports(BTreeMap<String, (String, Span)>);
 
 impl Ports {
+    /// Records a use of a port. Returns the name and the first use of the port that already has
+    /// this variable.
+    pub fn add(&mut self, variable: String, name: &str, span: Span) -> Option<&(String, Span)> {
+        match self.0.entry(variable) {
+            Entry::Occupied(known) => Some(known.into_mut()),
+            Entry::Vacant(new) => {
+                new.insert((name.to_owned(), span));
+                None
+            }
+        }
+    }
+
     /// Returns the names, sorted.
     pub fn names(&self) -> Vec<String> {
         let mut names: Vec<_> = self.0.values().map(|(name, _)| name.clone()).collect();
@@ -49,58 +56,6 @@ pub fn expand(text: &str, port: impl Fn(&str) -> String) -> String {
         }
     }
     expanded
-}
-
-/// Records the ports of a value and reports invalid references.
-pub(super) fn check(reader: &mut ElementReader<'_>, what: &str, value: &Spanned<String>) {
-    warn_of_misspelling(reader, value);
-    record_each(reader, SYNTAX, (what, value), record);
-}
-
-fn record(reader: &mut ElementReader<'_>, name: &str, span: Span) {
-    let known = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-    let is_valid = name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.chars().all(known);
-    if !is_valid || name.len() > MAX_NAME_LENGTH {
-        let message = format!("`{name}` is not the name of a port");
-        let expected = format!(
-            "a name starts with a letter, followed by letters, digits, `-` and `_`: \
-             at most {MAX_NAME_LENGTH} characters"
-        );
-        let label = reader.source.label(span, "");
-        let problem = Diagnostic::error("invalid-port", message).label(label).note(expected);
-        return reader.report(problem);
-    }
-    let variable = SuitePort::variable(name);
-    if let Some((other, first)) = reader.ports.0.get(&variable) {
-        if other != name {
-            let message = format!("the ports `{other}` and `{name}` would both be in `{variable}`");
-            let problem = Diagnostic::error("invalid-port", message)
-                .label(reader.source.label(span, ""))
-                .label(reader.source.label(*first, "the other one"));
-            reader.report(problem);
-        }
-        return;
-    }
-    reader.ports.0.insert(variable, (name.to_owned(), span));
-}
-
-/// Warns about `${prot:sim}`, but not about `${PORT:-5000}`, which is shell syntax.
-fn warn_of_misspelling(reader: &mut ElementReader<'_>, value: &Spanned<String>) {
-    let text = &value.value;
-    for (start, _) in text.match_indices("${") {
-        let inside = &text[start + 2..];
-        let Some((word, rest)) = inside.split_once(':') else { continue };
-        let letters = word.chars().all(|c| c.is_ascii_alphabetic());
-        let named = rest.starts_with(|c: char| c.is_ascii_alphabetic());
-        let similar = nearest(word, std::iter::once("port")).is_some();
-        if word != "port" && letters && named && similar {
-            let span = position(reader, value, start..start + 3 + word.len());
-            let problem = Diagnostic::warning("no-port", format!("`${{{word}:` means itself"))
-                .label(reader.source.label(span, ""))
-                .hint(format!("did you mean `{OPEN}`?"));
-            reader.report(problem);
-        }
-    }
 }
 
 #[cfg(test)]
