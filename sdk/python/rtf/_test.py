@@ -6,7 +6,7 @@ import math
 import os
 
 from rtf import _attachment, _clock, _location, _questions, _session
-from rtf._cases import Case
+from rtf._case import Case
 from rtf._fault import Fault
 from rtf._near import Comparison
 from rtf._plugin import Plugin, limit_of
