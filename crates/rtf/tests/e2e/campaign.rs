@@ -4,34 +4,35 @@ use insta::assert_snapshot;
 use regex::Regex;
 use rtf_report::episode_results::EpisodeLine;
 
-use crate::support::{Finished, Folder, kill, nothing_left, wait_until};
+use crate::support::{Finished, Folder, nothing_left};
 
 /// Fails if the payload is 2 or more.
-const GRASP: &str = "TestCase = {}\nfunction TestCase.run()\n  \
+pub const GRASP: &str = "TestCase = {}\nfunction TestCase.run()\n  \
     local payload = tonumber(os.getenv('RTF_PARAM_PAYLOAD'))\n  \
     rtf.check(payload < 2, 'too heavy')\nend\n";
-const SUITE: &str = "<suite name='grasp'><test param='${param:payload}'>Grasp.lua</test></suite>";
+pub const SUITE: &str =
+    "<suite name='grasp'><test param='${param:payload}'>Grasp.lua</test></suite>";
 /// Four of five values pass.
 const PAYLOAD: &str = "<parameter name='payload' distribution='uniform' low='0' high='2.5'/>";
 
-fn folder(suite: &str, campaign: &str) -> Folder {
+pub fn folder(suite: &str, campaign: &str) -> Folder {
     let folder = Folder::new();
     folder.file("Grasp.lua", GRASP).file("grasp.xml", suite);
     folder.file("campaign.xml", &format!("<campaign suite='grasp.xml' {campaign}</campaign>"));
     folder
 }
 
-fn fixed(episodes: u32, rate: &str) -> String {
+pub fn fixed(episodes: u32, rate: &str) -> String {
     let claim = format!("<claim require='rate &gt;= {rate}' confidence='0.95'/>");
     format!("episodes='{episodes}'>{PAYLOAD}{claim}")
 }
 
-fn run(folder: &Folder, more: &[&str]) -> Finished {
+pub fn run(folder: &Folder, more: &[&str]) -> Finished {
     folder.rtf(&[&["campaign", "run", "campaign.xml"], more].concat())
 }
 
 /// The final results without durations, in the order of the episodes.
-fn results(folder: &Folder) -> Vec<EpisodeLine> {
+pub fn results(folder: &Folder) -> Vec<EpisodeLine> {
     let text = folder.read("rtf-results/campaigns/latest/results.jsonl");
     let line = |line| {
         let line: EpisodeLine = serde_json::from_str(line).expect("a result");
@@ -169,61 +170,6 @@ fn a_bench_that_does_not_work_ends_the_campaign() {
     assert_eq!(finished.code, Some(6), "{}", finished.stdout);
     assert!(finished.stdout.contains("  ended early: 10 executions"), "{}", finished.stdout);
     assert!(nothing_left(&folder));
-}
-
-/// Each episode takes 50 ms.
-fn slow() -> Folder {
-    let folder = folder(SUITE, &fixed(60, "0.5"));
-    let test = GRASP.replace("  rtf.check", "  rtf.sleep(0.05)\n  rtf.check");
-    folder.file("Grasp.lua", &test);
-    folder
-}
-
-fn lines_of_first_worker(folder: &Folder) -> usize {
-    let file = folder.path().join("rtf-results/campaigns/latest/workers/1/latest/episodes.jsonl");
-    std::fs::read_to_string(file).map_or(0, |text| text.lines().count())
-}
-
-fn resume(folder: &Folder) {
-    let undisturbed = slow();
-    run(&undisturbed, &["--workers", "2"]);
-    let finished = folder.rtf(&[
-        "campaign",
-        "run",
-        "--workers",
-        "2",
-        "--resume",
-        "rtf-results/campaigns/latest",
-    ]);
-    assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
-    assert_eq!(results(folder), results(&undisturbed), "each episode has its result, once");
-    assert!(nothing_left(folder));
-}
-
-#[test]
-fn a_campaign_is_interrupted_and_resumed() {
-    let folder = slow();
-    let running = folder.start(&["campaign", "run", "campaign.xml", "--workers", "2"]);
-    wait_until("some episodes", || (lines_of_first_worker(&folder) > 10).then_some(()));
-    let twice = folder.rtf(&["campaign", "run", "--resume", "rtf-results/campaigns/latest"]);
-    assert_eq!(twice.code, Some(2), "{}", twice.stdout);
-    assert!(twice.stderr.contains("is still running"), "{}", twice.stderr);
-    running.signal("INT");
-    let finished = running.finish();
-    assert_eq!(finished.code, Some(130), "{}", finished.stdout);
-    assert!(finished.stdout.contains("rtf campaign run --resume "), "{}", finished.stdout);
-    assert!(nothing_left(&folder));
-    resume(&folder);
-}
-
-#[test]
-fn a_campaign_that_is_killed_leaves_nothing_and_is_resumed() {
-    let folder = slow();
-    let running = folder.start(&["campaign", "run", "campaign.xml", "--workers", "2"]);
-    wait_until("some episodes", || (lines_of_first_worker(&folder) > 10).then_some(()));
-    running.signal("KILL");
-    running.finish();
-    resume(&folder);
 }
 
 #[test]
@@ -388,26 +334,6 @@ fn two_versions_are_compared_on_the_same_episodes() {
     assert!(refused.stderr.contains("have different episodes"), "{}", refused.stderr);
 }
 
-/// The results so far are judged, and the rest can be run later.
-#[test]
-fn a_budget_ends_a_campaign() {
-    let folder = slow();
-    let campaign = fixed(400, "0.5");
-    let text = format!("<campaign budget='3s' suite='grasp.xml' {campaign}</campaign>");
-    folder.file("campaign.xml", &text);
-    let finished = run(&folder, &[]);
-    assert_eq!(finished.code, Some(6), "{}{}", finished.stdout, finished.stderr);
-    let expected =
-        "  ended early: the budget of 3s has passed\n  continue: rtf campaign run --resume";
-    assert!(finished.stdout.contains(expected), "{}", finished.stdout);
-    let before = results(&folder).len();
-    assert!(before > 0);
-    let resumed = folder.rtf(&["campaign", "run", "--resume", "rtf-results/campaigns/latest"]);
-    assert_eq!(resumed.code, Some(6), "{}", resumed.stderr);
-    assert!(results(&folder).len() > before);
-    assert!(nothing_left(&folder));
-}
-
 #[test]
 fn workers_have_separate_networks() {
     let suite = "<suite name='grasp' isolate='network'>\
@@ -426,25 +352,4 @@ fn workers_have_separate_networks() {
     let finished = run(&folder, &["--workers", "3"]);
     assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
     assert!(!finished.stdout.contains("bench"), "{}", finished.stdout);
-}
-
-/// The first child of a process.
-pub fn first_child(pid: u32) -> Option<u32> {
-    let children = std::fs::read_to_string(format!("/proc/{pid}/task/{pid}/children")).ok()?;
-    children.split_whitespace().next()?.parse().ok()
-}
-
-#[test]
-fn the_episode_of_a_worker_that_dies_is_repeated() {
-    let folder = slow();
-    let running = folder.start(&["campaign", "run", "campaign.xml"]);
-    wait_until("some episodes", || (lines_of_first_worker(&folder) > 10).then_some(()));
-    let guard = first_child(running.child.id()).expect("the guard of the worker");
-    assert!(kill(first_child(guard).expect("the runner")));
-    let finished = running.finish();
-    assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
-    let died = "worker 1 ended with exit code 5";
-    assert!(finished.stdout.contains(died), "{}", finished.stdout);
-    assert_eq!(results(&folder).len(), 60);
-    assert!(nothing_left(&folder));
 }

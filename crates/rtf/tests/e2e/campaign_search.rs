@@ -6,7 +6,7 @@ use std::process::{ChildStdin, ChildStdout, Stdio};
 use insta::assert_snapshot;
 use serde_json::{Value, json};
 
-use crate::campaign::first_child;
+use crate::ended_campaigns::first_child;
 use crate::support::{Finished, Folder, Running, kill, nothing_left, wait_until};
 
 /// Fails with a heavy payload on ice. The log has a line for each start of the simulator.

@@ -32,6 +32,7 @@ mod cpp_fixture;
 mod damaged_journals;
 mod doctor;
 mod documented;
+mod ended_campaigns;
 mod faults;
 mod fixture_values;
 mod forked_children;
