@@ -29,7 +29,7 @@ pub fn check_trajectory(data: &[u8]) {
     }
 }
 
-/// More pixels than this take long, and nothing else happens to them. The limit of the decoder has tests of its own.
+/// More pixels than this only take long. Unit tests examine the limit of the decoder.
 const MOST_PIXELS: u64 = 1 << 14;
 
 /// A file of a picture: one that is accepted equals itself.
