@@ -1,7 +1,14 @@
 //! Addresses of the API: the parts that are known outside of its routes.
 
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
+
 /// Where the API is.
 pub const API: &str = "/api/v1";
+
+/// What is encoded in a part of a path: all except the unreserved characters of RFC 3986.
+const PART: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'_').remove(b'.').remove(b'~');
+/// What is encoded in a path.
+const PATH: &AsciiSet = &PART.remove(b'/');
 
 /// The address of a file in the run's directory.
 pub fn file(run: &str, path: &str) -> String {
@@ -10,19 +17,22 @@ pub fn file(run: &str, path: &str) -> String {
 
 /// As it may stand in a part of a path or a header: a `/` is encoded, too.
 pub fn encoded_part(text: &str) -> String {
-    encoded(text).replace('/', "%2F")
+    utf8_percent_encode(text, PART).to_string()
 }
 
 /// As it may stand in a path; a `/` stays one.
 pub fn encoded(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for byte in text.bytes() {
-        match byte {
-            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' | b'~' | b'/' => {
-                out.push(char::from(byte));
-            }
-            byte => out += &format!("%{byte:02X}"),
-        }
+    utf8_percent_encode(text, PATH).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn everything_except_unreserved_characters_is_encoded() {
+        let text = "a Z-_.~/\"%?#&+é\n";
+        assert_eq!(encoded(text), "a%20Z-_.~/%22%25%3F%23%26%2B%C3%A9%0A");
+        assert_eq!(encoded_part(text), "a%20Z-_.~%2F%22%25%3F%23%26%2B%C3%A9%0A");
     }
-    out
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use axum::http::{HeaderMap, HeaderValue, header};
 
 use crate::address::encoded_part;
+use crate::header::insert;
 use crate::index::AttachmentInfo;
 
 /// The only directory whose files are served.
@@ -105,13 +106,6 @@ pub fn is_attachment(path: &str) -> bool {
     let odd = |part: &&str| part.is_empty() || *part == "." || *part == "..";
     let below = parts.first() == Some(&FOLDER) && parts.len() > 1 && !parts.iter().any(odd);
     below && !path.contains(['\\', '\0'])
-}
-
-/// Adds a header, unless the value cannot be one.
-pub fn insert(headers: &mut HeaderMap, name: header::HeaderName, value: &str) {
-    if let Ok(value) = HeaderValue::from_str(value) {
-        headers.insert(name, value);
-    }
 }
 
 #[cfg(test)]

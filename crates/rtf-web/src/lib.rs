@@ -18,6 +18,7 @@ mod campaign_report;
 mod capabilities;
 mod connections;
 mod feed;
+mod header;
 mod history_source;
 pub mod html_report;
 mod index;

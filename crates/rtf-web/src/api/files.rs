@@ -1,4 +1,4 @@
-//! Files of a run: what tests attached, and the journal. Nothing else outside of `attachments/` is ever opened.
+//! Files of a run: what tests attached, and the journal. No other file is ever opened.
 
 use std::fs::File;
 use std::path::Path;
@@ -11,8 +11,9 @@ use super::problems::Problems;
 use super::query::At;
 use crate::address::encoded;
 use crate::app::App;
-use crate::attached_file::{ServedType, insert, is_attachment};
+use crate::attached_file::{ServedType, is_attachment};
 use crate::byte_range::{RangeRequest, range};
+use crate::header::insert;
 use crate::problem::Problem;
 use crate::runs::Run;
 use crate::stream_file;
