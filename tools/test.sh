@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Runs all checks; tools/steps has their functions. If a step fails, the script prints the end of its output and continues;
+# Runs all checks. If a step fails, the script prints the end of its output and continues;
 # build/test-logs has complete logs. The last line counts the steps. Steps with robots and
 # frameworks, which mostly wait, run at the same time as the other steps that need the release build.
+# This file lists the steps; their functions are in tools/steps.
 #
 #   tools/test.sh             all steps
 #   tools/test.sh quick       without steps that need middleware (ROS, YARP, …)

@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# Results that other programs compute, too. tools/test.sh sources this file.
+# Comparisons with results of other programs. tools/test.sh sources this file.
 
 # Change points, compared with those of Apache Otava and with planted changes.
 history_change_points() {

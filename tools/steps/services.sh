@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# Servers and clusters, which the tests start. tools/test.sh sources this file.
+# Tests with servers and clusters, which they start. tools/test.sh sources this file.
 
 # Metrics and traces, read by Prometheus and by OpenTelemetry's collector and its decoder.
 telemetry() {
