@@ -28,6 +28,8 @@ RUNNER_DIED = 5
 LONG = "--set=seconds=20"
 """How long the victim listens, in seconds: long enough to disturb it."""
 
+MAY_DIE = "--may-die lidar --may-die camera"
+
 BROKEN = """<launch>
   <node name="wheel" pkg="rover" type="wheel.py"/>
   <node name="rudder" pkg="rover" type="rudder.py"/>
@@ -37,6 +39,28 @@ BROKEN_SUITE = """<suite name="broken">
   <fixture param="broken.launch"> roslaunch </fixture>
   <test> Never.py </test>
 </suite>
+"""
+ENDING = """<launch>
+  <node name="arm" pkg="ending" type="node.py" args="0"/>
+  <node name="lidar" pkg="ending" type="node.py" args="11" respawn="true"/>
+  <node name="camera" pkg="ending" type="node.py" args="3"/>
+</launch>
+"""
+ENDING_SUITE = """<suite name="ending">
+  <env name="ROS_PACKAGE_PATH" value="{packages}"/>
+  <fixture param="ending/ending.launch {options}"> roslaunch </fixture>
+  <test> Never.py </test>
+</suite>
+"""
+ENDING_NODE = """#!/usr/bin/python3
+# Ends with an exit code, or by a signal, when it is stopped.
+import os, sys, rospy
+rospy.init_node("node")
+how = int(sys.argv[1])
+rospy.spin()
+if how == 11:
+    os.kill(os.getpid(), how)
+sys.exit(how)
 """
 NEVER = "import rtf\nclass Never(rtf.TestCase):\n    def run(self):\n        pass\n"
 
@@ -66,6 +90,8 @@ def main() -> int:
             (frozen, rover, []),
             (runner_killed, rover, [LONG]),
             (not_launched, broken(Path(directory)), []),
+            (ended_badly, ending(Path(directory), "bad", ""), []),
+            (may_end_badly, ending(Path(directory), "good", MAY_DIE), []),
             (bag_kept, slipping, []),
             (bag_of_collapse, slipping, [LONG]),
             (silent, probes, [LONG]),
@@ -153,6 +179,21 @@ def broken(directory: Path) -> Path:
     return suite
 
 
+def ending(directory: Path, name: str, options: str) -> Path:
+    """A suite with a package of nodes that end in different ways when they are stopped."""
+    package = directory / name / "ending"
+    package.mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>ending</name></package>")
+    (package / "ending.launch").write_text(ENDING)
+    node = package / "node.py"
+    node.write_text(ENDING_NODE)
+    node.chmod(0o755)
+    (directory / name / "Never.py").write_text(NEVER)
+    suite = directory / name / f"{name}.xml"
+    suite.write_text(ENDING_SUITE.format(packages=f"{package.parent}:/usr/share", options=options))
+    return suite
+
+
 def undisturbed(scene: Scene) -> None:
     """All tests pass."""
     scene.finish(0)
@@ -235,6 +276,24 @@ def not_launched(scene: Scene) -> None:
     reason = scene.run.reason("fixture-broken")
     scene.expect(f"`cannot launch node` in {reason!r}", "cannot launch node" in reason, True)
     scene.expect("which one", "rover/rudder.py" in reason, True)
+
+
+def ended_badly(scene: Scene) -> None:
+    """A node that crashes while it is stopped makes the run red, although roslaunch ignores it."""
+    scene.finish(1)
+    scene.expect("verdicts", list(scene.run.verdicts().values()), ["passed"])
+    (reason,) = scene.run.problems()
+    for part in (
+        "node /lidar was killed by SIGSEGV after SIGINT",
+        "node /camera ended with exit code 3 after SIGINT",
+    ):
+        scene.expect(f"`{part}` in {reason!r}", part in reason, True)
+    scene.expect("/arm, which ended well", "/arm" in reason, False)
+
+
+def may_end_badly(scene: Scene) -> None:
+    """`--may-die` allows it."""
+    scene.finish(0)
 
 
 def bag_kept(scene: Scene) -> None:

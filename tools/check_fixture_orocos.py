@@ -60,6 +60,7 @@ def checks(rtf: str, sources: Path, home: Path) -> None:
     hangs = ["does not answer: CORBA exception TRANSIENT: 127.0.0.1:"]
     collapses(Run(rtf, suite, home / "hangs", SECONDS), signal.SIGSTOP, hangs)
     never_there(rtf, suite, home / "never")
+    ends_badly(rtf, str(sources / "crashing.xml"), home)
 
 
 def build(sources: Path, directory: Path) -> None:
@@ -107,6 +108,16 @@ def never_there(rtf: str, suite: str, directory: Path) -> None:
     expect("exit code", run.wait(), 1)
     expect_in("CORBA exception NotFound", broken(run))
     expect_in("component elbow is Running", broken(run))
+
+
+def ends_badly(rtf: str, suite: str, home: Path) -> None:
+    """A deployer that crashes while it quits makes the run red, unless that is allowed."""
+    run = Run(rtf, suite, home / "crashing")
+    expect("exit code", run.wait(), 1)
+    reason = "tear-down failed: deployer-gnulinux was killed by SIGSEGV after `quit`"
+    expect("problems", run.problems(), [reason])
+    run = Run(rtf, suite, home / "may-die", "--set=options=--may-die")
+    expect("exit code", run.wait(), 0)
 
 
 def broken(run: Run) -> str:

@@ -113,6 +113,10 @@ class Run:
         """The reasons of collapses or of other events."""
         return [str(event["reason"]) for event in self.events(kind)]
 
+    def problems(self) -> list[str]:
+        """The problems of fixtures in set-up or tear-down."""
+        return [each["problem"] for each in self.events("fixture-stopped") if "problem" in each]
+
     def reason(self, kind: str = "fixture-collapsed") -> str:
         """The reason of the only event of this kind."""
         (reason,) = self.reasons(kind)
