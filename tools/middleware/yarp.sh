@@ -19,8 +19,9 @@ yarp_options=(
   "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG"
   -DCMAKE_INSTALL_LIBDIR=lib
   -DBUILD_SHARED_LIBS=ON
-  -DSKIP_ACE=ON
-  -DCMAKE_DISABLE_FIND_PACKAGE_ACE=ON
+  # Without ACE, YARP resolves names with gethostbyname, which crashes when two threads connect at the
+  # same time, for example when a port is opened while another program connects to it.
+  -DSKIP_ACE=OFF
   -DYARP_COMPILE_GUIS=OFF
   -DYARP_COMPILE_TESTS=OFF
   -DYARP_COMPILE_EXAMPLES=OFF
@@ -93,7 +94,7 @@ yarp_build() {
   touch "$yarp_prefix/complete"
 }
 
-need_packages libeigen3-dev libtinyxml-dev libedit-dev libsqlite3-dev liblua5.4-dev swig g++ cmake ninja-build \
+need_packages libace-dev libeigen3-dev libtinyxml-dev libedit-dev libsqlite3-dev liblua5.4-dev swig g++ cmake ninja-build \
   iproute2
 [ -e "$(python3 -c 'import sysconfig; print(sysconfig.get_path("include"))')/Python.h" ] ||
   need_packages python3-dev
