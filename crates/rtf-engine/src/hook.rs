@@ -70,6 +70,13 @@ impl HookJudgement {
         self.problem.get_or_insert(problem.into());
     }
 
+    /// Adds to the problem, if there is one.
+    pub fn add(&mut self, text: &str) {
+        if let Some(problem) = &mut self.problem {
+            *problem = format!("{problem}; {text}");
+        }
+    }
+
     /// Takes a notification of its host into account.
     pub fn notified(&mut self, notification: &Notification) {
         let problem = match notification {

@@ -64,6 +64,11 @@ impl Cgroup {
         let _ = std::fs::write(self.dir.join("cgroup.kill"), "1");
     }
 
+    /// Returns its processes.
+    pub fn members(&self) -> Vec<i32> {
+        members(&self.dir)
+    }
+
     /// Kills all its processes, waits up to 100 ms for their end, and returns them.
     pub async fn clear(&self) -> Vec<LeakedProcess> {
         let mut left = Vec::new();

@@ -59,14 +59,6 @@ impl Launch {
         Ok(process)
     }
 
-    /// Kills the started process and everything below it.
-    pub fn kill(&self, process: &StartedProcess) {
-        if let Some(group) = &self.cgroup {
-            group.kill();
-        }
-        tree::kill_tree(process.pid);
-    }
-
     /// Kills the leftover processes of an ended process, and returns them.
     pub async fn sweep(&mut self, effort: Effort) -> Vec<LeakedProcess> {
         let mut left = Vec::new();

@@ -10,6 +10,8 @@ use std::time::Duration;
 
 use rtf_model::signal_name;
 
+use crate::tree::SignalReach;
+
 /// The remote script, without its comments.
 static SCRIPT: LazyLock<String> = LazyLock::new(|| {
     let lines = include_str!("ssh.sh").lines().map(str::trim);
@@ -68,8 +70,9 @@ pub fn is_remote(command: &[String]) -> bool {
 }
 
 /// Returns the line that sends a signal to a remote process over its channel.
-pub fn signal_line(signal: i32) -> Vec<u8> {
-    format!("{}\n", portable_name(signal)).into_bytes()
+pub fn signal_line(signal: i32, reach: SignalReach) -> Vec<u8> {
+    let reach = if reach == SignalReach::Group { "" } else { " tree" };
+    format!("{}{reach}\n", portable_name(signal)).into_bytes()
 }
 
 /// The signal's name without `SIG`: numbers differ between systems.
@@ -106,8 +109,8 @@ mod tests {
         let before = command.len() - 2;
         assert_eq!(command[before - 1..=before], ["--", "me@robot"]);
         assert!(command[before + 1].ends_with(" rtf TERM 2 driver"), "{}", command[before + 1]);
-        assert_eq!(signal_line(2), b"INT\n");
-        assert_eq!(signal_line(28), b"28\n");
+        assert_eq!(signal_line(2, SignalReach::Group), b"INT\n");
+        assert_eq!(signal_line(28, SignalReach::Tree), b"28 tree\n");
     }
 
     /// Runs the line in a login shell and a new session, as `sshd` does.
@@ -154,7 +157,7 @@ mod tests {
         let (mut shell, mut life, mut printed) = start(command.last().unwrap());
         let mut line = String::new();
         printed.read_line(&mut line).unwrap();
-        life.write_all(&signal_line(15)).unwrap();
+        life.write_all(&signal_line(15, SignalReach::Group)).unwrap();
         printed.read_line(&mut line).unwrap();
         assert_eq!((line.as_str(), shell.wait().unwrap().code()), ("up\nasked\n", Some(7)));
     }

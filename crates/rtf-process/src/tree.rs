@@ -5,6 +5,7 @@
 //! subreaper: it adopts orphans, and identifies them by the scope variable in their
 //! environment.
 
+mod members;
 mod sweep;
 
 use std::collections::HashSet;
@@ -20,6 +21,7 @@ use rtf_model::LeakedProcess;
 use rtf_model::protocol::{FORK_SERVER_VARIABLE, OWNER_VARIABLE, SCOPE_VARIABLE};
 
 use crate::unix;
+pub use members::{SignalReach, Tree};
 pub use sweep::Effort;
 use sweep::sweep_if;
 

@@ -52,7 +52,9 @@ pub async fn watch_attached(
                 | ProcessCommand::Assign(_),
             ) => {}
             Some(
-                ProcessCommand::CloseChannel | ProcessCommand::Signal(_) | ProcessCommand::KillTree,
+                ProcessCommand::CloseChannel
+                | ProcessCommand::Signal(..)
+                | ProcessCommand::KillTree,
             )
             | None => break,
         }

@@ -8,6 +8,7 @@ use rtf_model::protocol::{Plugin, Request, StackSupport};
 use super::event::HostId;
 use super::job::ProcessOwner;
 use crate::probe::ProbeSelection;
+use crate::tree::SignalReach;
 
 /// A command to a process's task.
 #[derive(Debug)]
@@ -21,8 +22,8 @@ pub enum ProcessCommand {
     /// Dump the stacks of its threads; with a debugger if a host that sends them itself has
     /// not done so in this time.
     DumpStack(StackSupport, Duration),
-    /// Send a signal to its process group.
-    Signal(i32),
+    /// Send a signal to its process group, or to more of its tree.
+    Signal(i32, SignalReach),
     /// Kill it and everything below it.
     KillTree,
     /// Poll the `alive` probes from now on.
@@ -38,7 +39,7 @@ impl ProcessCommand {
             self,
             Self::Send(_, Request::Interrupt { .. })
                 | Self::DumpStack(..)
-                | Self::Signal(_)
+                | Self::Signal(..)
                 | Self::KillTree
         )
     }

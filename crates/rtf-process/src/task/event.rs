@@ -63,6 +63,10 @@ pub enum ProcessEvent {
     /// Its host served earlier assignments and ended before this one began. The last event
     /// of this id.
     NotStarted(ExitStatus),
+    /// It ended, and processes that it started are alive: its tree is being stopped, or it is a
+    /// fixture that ended by itself. [`ProcessEvent::Exited`] follows when the last of them has
+    /// ended, or was killed.
+    LeaderEnded(ExitStatus, Vec<LeakedProcess>),
     /// It ended, all its output was delivered, and its leftover processes were killed. The
     /// last event of this id.
     Exited(ExitStatus, Vec<LeakedProcess>),

@@ -1,12 +1,14 @@
 //! Processes the messages and the output of a process.
 
+use std::time::Duration;
+
 use rtf_model::protocol::Notification;
 use rtf_model::{ExitStatus, Stream};
 
 use super::line_assembly::{LineWriter, TooLong};
 use super::shared_host::SharedHost;
 use super::streams::{Buffers, Received, read, receive};
-use super::{DRAIN_LIMIT, ProcessEvent, ProcessTask};
+use super::{ProcessEvent, ProcessTask};
 use crate::codec::{self, HostMessage, LINE_LIMIT};
 use crate::process::StartedProcess;
 use crate::spawn_request::ProcessRole;
@@ -25,8 +27,8 @@ impl ProcessTask {
     }
 
     /// Reads the remaining output. The limit applies to waiting, not to reading.
-    pub(super) async fn drain(&mut self, buffers: &mut Buffers) {
-        let limit = tokio::time::Instant::now() + DRAIN_LIMIT;
+    pub(super) async fn drain(&mut self, buffers: &mut Buffers, limit: Duration) {
+        let limit = tokio::time::Instant::now() + limit;
         let mut late_reads = 0;
         while self.is_open() && late_reads < LATE_READS {
             late_reads += u32::from(tokio::time::Instant::now() >= limit);

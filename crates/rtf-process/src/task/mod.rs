@@ -16,6 +16,7 @@ mod line_assembly;
 mod pictures;
 mod probing;
 mod references;
+mod remains;
 mod shared_host;
 mod streams;
 mod throttle;
@@ -42,11 +43,12 @@ use crate::codec::{self, HostMessage};
 use crate::probe::{self, FileVersions, ProbeSelection};
 use crate::process::StartedProcess;
 use crate::spawn_request::ProcessRole;
-use crate::tree::Effort;
-use crate::{ssh, stack_dump, start_gate, tree, unix};
+use crate::tree::{Effort, SignalReach, Tree};
+use crate::{ssh, stack_dump, start_gate, tree};
 use debugger::DebuggerWait;
 use file_copy::FileCopy;
 use line_assembly::LineAssembly;
+use remains::TreeStop;
 use shared_host::SharedHost;
 use streams::{Buffers, read, receive, wait};
 use throttle::Throttle;
@@ -130,6 +132,7 @@ struct ProcessTask {
     check: Option<ProbeSelection>,
     /// Probes and stack dumps; they end with the task.
     background: JoinSet<()>,
+    stop: TreeStop,
 }
 
 impl ProcessTask {
@@ -143,6 +146,7 @@ impl ProcessTask {
             true => DebuggerWait::Starting,
             false => DebuggerWait::Over,
         };
+        let stop = TreeStop::new(Tree::new(process.pid, &job.launch.scope));
         Self {
             job,
             context,
@@ -160,6 +164,7 @@ impl ProcessTask {
             debugger,
             check: None,
             background: JoinSet::new(),
+            stop,
         }
     }
 
@@ -204,7 +209,14 @@ impl ProcessTask {
                     self.printed(Stream::Stdout, &buffers.stdout).await,
                 _ = read(&mut process.stderr, &mut buffers.stderr) =>
                     self.printed(Stream::Stderr, &buffers.stderr).await,
-                status = wait(&mut process.end) => break status,
+                status = wait(&mut process.end), if self.stop.leader().is_none() =>
+                    if let Some(status) = self.on_leader_end(status, &mut buffers).await {
+                        break status;
+                    },
+                () = self.stop.next_end() =>
+                    if let Some(status) = self.await_next() {
+                        break status;
+                    },
                 result = copied(&mut self.copy) => self.copy_finished(result).await,
                 () = tokio::time::sleep(throttle::POLL_INTERVAL), if is_throttled =>
                     self.update_throttle().await,
@@ -227,8 +239,9 @@ impl ProcessTask {
         // Hosts of tests are only in a group if each leak counts.
         let is_strict = self.job.is_grouped && self.role() == Some(ProcessRole::Test);
         let effort = if is_strict { Effort::Thorough } else { Effort::Once };
-        let mut left = self.job.launch.sweep(effort).await;
-        self.drain(buffers).await;
+        let found = self.job.launch.sweep(effort).await;
+        let mut left = self.stop.leaked(found);
+        self.drain(buffers, DRAIN_LIMIT).await;
         self.finish_copies(commands).await;
         self.deliver_last_line(status).await;
         self.rename_leak_owner(&mut left);
@@ -249,26 +262,30 @@ impl ProcessTask {
             self.abandon_copy().await;
             if !self.debugger.is_over() {
                 // The test has not begun: there is nothing to tear down.
-                return self.job.launch.kill(&self.process);
+                return self.kill_tree();
             }
         }
         match command {
             ProcessCommand::Assign(assignment) => self.assign(assignment),
             ProcessCommand::Send(id, request) => self.send(id, request),
             ProcessCommand::CloseChannel => self.outgoing.close(),
-            ProcessCommand::Signal(signal) if self.is_remote() => self.signal_remote(signal),
-            ProcessCommand::Signal(signal) => unix::signal_group(pid, signal),
-            ProcessCommand::KillTree if self.is_remote() => {
-                self.signal_remote(SIGKILL);
+            ProcessCommand::Signal(signal, reach) if self.is_remote_alive() => {
+                self.signal_remote(signal, reach);
+            }
+            ProcessCommand::Signal(signal, reach) => self.signal_tree(signal, reach),
+            ProcessCommand::KillTree if self.is_remote_alive() => {
+                self.signal_remote(SIGKILL, SignalReach::Tree);
                 // The connection may be stuck.
                 self.background.spawn(async move {
                     tokio::time::sleep(REMOTE_KILL_LIMIT).await;
                     tree::kill_tree(pid);
                 });
             }
-            ProcessCommand::KillTree => self.job.launch.kill(&self.process),
+            ProcessCommand::KillTree => self.kill_tree(),
             ProcessCommand::DumpStack(support, wait) => self.dump_stack(support, wait),
             ProcessCommand::WatchAlive => self.watch_alive(),
+            // Its end was reported.
+            ProcessCommand::CheckAlive(_) if self.stop.leader().is_some() => {}
             ProcessCommand::CheckAlive(selection) => self.check = Some(selection),
         }
     }
@@ -277,16 +294,20 @@ impl ProcessTask {
         self.job.launch.request.role
     }
 
-    fn is_remote(&self) -> bool {
-        ssh::is_remote(&self.job.launch.request.command)
+    /// Whether a remote shell gets its signals.
+    fn is_remote_alive(&self) -> bool {
+        self.stop.tree.has_leader() && ssh::is_remote(&self.job.launch.request.command)
     }
 
-    fn signal_remote(&mut self, signal: i32) {
+    fn signal_remote(&mut self, signal: i32, reach: SignalReach) {
         // A stuck connection is noticed by its limit.
-        self.outgoing.push(&ssh::signal_line(signal));
+        self.outgoing.push(&ssh::signal_line(signal, reach));
     }
 
     fn send(&mut self, id: Option<u64>, mut request: Request) {
+        if matches!(request, Request::Interrupt { .. } | Request::TearDownFixture {}) {
+            self.begin_tree_stop();
+        }
         if let Request::RunTest(plugin) = &mut request {
             self.complete(plugin, &self.job.attachments_dir, id.unwrap_or_default());
             if let (Some(marker), None) = (&plugin.end_marker, &self.shared) {

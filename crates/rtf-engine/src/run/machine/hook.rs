@@ -4,8 +4,10 @@ use rtf_model::protocol::{Notification, QuestionEnd, Request};
 use rtf_model::{EventKind, ExitStatus, LeakedProcess, Question, Source, TestId, Trigger};
 
 use super::context::Context;
-use super::io::{Deadline, Effect, HostId, ProcessEvent, Program, StartRequest, environment};
-use super::kill_escalation::{KILL_WAIT, MAX_KILLS, SIGTERM, TERM_GRACE};
+use super::io::{
+    Deadline, Effect, HostId, ProcessEvent, Program, SignalReach, StartRequest, environment,
+};
+use super::kill_escalation::{KILL_WAIT, MAX_KILLS, SIGTERM, TERM_GRACE, killed_text};
 use super::output_capture::OutputCapture;
 use crate::fixture_values::FixtureValues;
 use crate::hook::{ASKED, HookJudgement, RUN_REQUEST, request, trigger_variables};
@@ -68,6 +70,10 @@ impl<'p> RunningHook<'p> {
                 self.end(Some(status), leaked, cx);
                 return true;
             }
+            // After a stop, the processes that are left have the rest of the grace.
+            ProcessEvent::LeaderEnded(..) if self.signals == 0 => {
+                cx.push(Effect::KillTree(self.host));
+            }
             ProcessEvent::Notified(notification) => {
                 self.judgement.notified(&notification);
                 match notification {
@@ -96,7 +102,7 @@ impl<'p> RunningHook<'p> {
     /// up, because it was killed and does not end.
     pub fn on_deadline(&mut self, cx: &mut Context<'_>) -> bool {
         let (effect, wait) = match self.signals {
-            0 => (Effect::Signal(self.host, SIGTERM), TERM_GRACE),
+            0 => (Effect::Signal(self.host, SIGTERM, SignalReach::Tree), TERM_GRACE),
             kills if kills <= MAX_KILLS => (Effect::KillTree(self.host), KILL_WAIT),
             _ => {
                 cx.abandon(format!("the process of hook `{}`", self.plan.name));
@@ -122,7 +128,11 @@ impl<'p> RunningHook<'p> {
     fn end(&mut self, exit: Option<ExitStatus>, leaked: Vec<LeakedProcess>, cx: &mut Context<'_>) {
         cx.clear(Deadline::Hook);
         self.output.finish(cx);
-        cx.report_leaked(Source::Hook(self.plan.id), leaked);
+        if self.signals > 1 {
+            killed_text(&leaked).into_iter().for_each(|text| self.judgement.add(&text));
+        } else {
+            cx.report_leaked(Source::Hook(self.plan.id), leaked);
+        }
         let problem = self.judgement.finish(exit);
         cx.emit(EventKind::HookFinished { hook: self.plan.id, problem });
     }

@@ -14,6 +14,7 @@ use crate::fixture_values::FixtureValues;
 pub use crate::control::{QuestionReply, Stop, StopLevel};
 pub use rtf_process::probe::ProbeSelection;
 pub use rtf_process::task::{HostId, ProcessEvent};
+pub use rtf_process::tree::SignalReach;
 
 /// An input.
 #[derive(Debug)]
@@ -161,8 +162,8 @@ pub enum Effect {
     /// Take a stack dump, with a debugger if the host has not sent a `stack` notification in
     /// this time. Answered by [`ProcessEvent::StackDumped`] or that notification.
     DumpStack(HostId, StackSupport, Duration),
-    /// Send a signal to the process and its group.
-    Signal(HostId, i32),
+    /// Send a signal to the process and its group, or to more of its tree.
+    Signal(HostId, i32, SignalReach),
     /// Kill the process and all descendants.
     KillTree(HostId),
     /// Run the `alive` probes of a fixture periodically from now on.

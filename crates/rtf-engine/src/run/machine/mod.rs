@@ -22,6 +22,6 @@ pub(crate) mod tests;
 
 pub use io::{
     Deadline, Effect, FixtureTimer, HostId, Input, ProbeSelection, ProcessEvent, Program,
-    QuestionReply, StartRequest, Stop, StopLevel, TestTimer,
+    QuestionReply, SignalReach, StartRequest, Stop, StopLevel, TestTimer,
 };
 pub use suite::SuiteMachine;

@@ -264,7 +264,9 @@ impl SuiteTask<'_> {
             Effect::DumpStack(host, support, wait) => {
                 self.command(host, ProcessCommand::DumpStack(support, wait))
             }
-            Effect::Signal(host, signal) => self.command(host, ProcessCommand::Signal(signal)),
+            Effect::Signal(host, signal, reach) => {
+                self.command(host, ProcessCommand::Signal(signal, reach))
+            }
             Effect::KillTree(host) => self.kill(host),
             Effect::WatchAlive(host) => self.command(host, ProcessCommand::WatchAlive),
             Effect::CheckAlive(host, probes) => {

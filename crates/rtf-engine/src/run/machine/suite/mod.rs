@@ -218,6 +218,8 @@ impl<'p> SuiteMachine<'p> {
             fixture.handle_reset(input, cx);
         } else if self.hooks.owns(host) {
             self.hooks.handle(input, cx);
+        } else if let ProcessEvent::LeaderEnded(..) = input {
+            cx.push(Effect::KillTree(host));
         } else if let ProcessEvent::Exited(status, _) = input {
             self.on_idle_host_exit(host, status, cx);
         }

@@ -141,6 +141,7 @@ impl<'p> TestRun<'p> {
                 self.state = AttemptState::Ended;
             }
             ProcessEvent::Exited(status, leaked) => self.on_exit(Some(status), leaked, cx),
+            ProcessEvent::LeaderEnded(..) => self.on_leader_end(cx),
             ProcessEvent::Released => {
                 self.is_released = true;
                 self.on_exit(None, Vec::new(), cx);

@@ -8,7 +8,7 @@ use rtf_model::{EventKind, Phase, StopCause};
 
 use super::{AttemptState, TestRun};
 use crate::run::machine::context::Context;
-use crate::run::machine::io::{Effect, TestTimer};
+use crate::run::machine::io::{Effect, SignalReach, TestTimer};
 use crate::run::machine::kill_escalation::{KILL_WAIT, MAX_KILLS, SIGTERM, TERM_GRACE};
 use rtf_process::stack_dump::{DEBUGGER_WAIT, HOST_DUMP_WAIT};
 
@@ -102,9 +102,19 @@ impl TestRun<'_> {
         }
     }
 
+    /// The process has ended, and others that it started are alive: they have the rest of the
+    /// grace.
+    pub(super) fn on_leader_end(&mut self, cx: &mut Context<'_>) {
+        if self.step.is_none() || self.is_released {
+            return cx.push(Effect::KillTree(self.host));
+        }
+        // An ended process has no stacks.
+        self.after_stack_dump(cx);
+    }
+
     fn terminate(&mut self, cx: &mut Context<'_>) {
         self.step = Some(StopStep::Terminated);
-        cx.push(Effect::Signal(self.host, SIGTERM));
+        cx.push(Effect::Signal(self.host, SIGTERM, SignalReach::Tree));
         self.set_limit(TERM_GRACE, cx);
     }
 

@@ -10,6 +10,7 @@ use super::{CarriedCases, TestRun};
 use crate::run::machine::context::Context;
 use crate::run::machine::io::TestTimer;
 use crate::run::machine::judge::{Judgement, judge, leak_problem};
+use crate::run::machine::kill_escalation::killed_text;
 
 /// How long a test that did not pass waits for a fixture's collapse: a connection breaks
 /// before the kernel reports the death at its other end. A test that would pass waits for
@@ -52,8 +53,7 @@ impl TestRun<'_> {
         self.stopwatch = None;
         self.clear(TestTimer::Slow, cx);
         self.output.finish(cx);
-        self.leak = leak_problem(self.plan.settings.leaks, &leaked);
-        cx.report_leaked(self.source(), leaked);
+        self.record_left(leaked, cx);
         (self.evidence.exit, self.evidence.released) = (exit, self.is_released);
         let verdict = judge(&self.evidence, self.phase).verdict;
         let may_have_collapsed = self.has_fixtures && self.evidence.stopped.is_none();
@@ -65,6 +65,19 @@ impl TestRun<'_> {
         match self.state {
             AttemptState::AwaitsCollapse => self.set_limit(COLLAPSE_WAIT, cx),
             _ => self.clear(TestTimer::Limit, cx),
+        }
+    }
+
+    /// Records the processes that were left and killed: at the end of a stop, or as leaked.
+    fn record_left(&mut self, left: Vec<LeakedProcess>, cx: &mut Context<'_>) {
+        match &mut self.evidence.stopped {
+            Some((_, reason, _)) if self.kills > 0 => {
+                killed_text(&left).into_iter().for_each(|text| *reason += &format!("; {text}"));
+            }
+            _ => {
+                self.leak = leak_problem(self.plan.settings.leaks, &left);
+                cx.report_leaked(self.source(), left);
+            }
         }
     }
 

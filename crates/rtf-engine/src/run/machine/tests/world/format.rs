@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::run::machine::Effect;
+use crate::run::machine::{Effect, SignalReach};
 
 pub fn line_of(json: &serde_json::Value) -> String {
     let mut line = json["type"].as_str().unwrap_or_default().to_owned();
@@ -31,7 +31,8 @@ pub fn effect_of(effect: &Effect) -> String {
     match effect {
         Effect::CloseChannel(_) => "→ close the channel".to_owned(),
         Effect::DumpStack(..) => "→ take a stack dump".to_owned(),
-        Effect::Signal(_, signal) => format!("→ signal {signal}"),
+        Effect::Signal(_, signal, SignalReach::Group) => format!("→ signal {signal}"),
+        Effect::Signal(_, signal, reach) => format!("→ signal {signal} ({reach:?})"),
         Effect::KillTree(_) => "→ kill the tree".to_owned(),
         other => format!("→ {other:?}"),
     }
