@@ -26,6 +26,7 @@ pub use sweep::Effort;
 use sweep::sweep_if;
 
 const SIGKILL: i32 = 9;
+const SIGTERM: i32 = 15;
 const SIGCONT: i32 = 18;
 /// How long [`kill_program`] waits.
 const KILL_LIMIT: Duration = Duration::from_secs(1);
@@ -115,16 +116,30 @@ pub fn add_new(known: &mut Vec<LeakedProcess>, more: Vec<LeakedProcess>) {
     known.extend(more.into_iter().filter(|process| !pids.contains(&process.pid)));
 }
 
+/// Sends SIGTERM to the processes below this one whose owner has this prefix, and waits for
+/// their end.
+pub fn terminate_owned(prefix: &str, limit: Duration) {
+    owned(prefix).into_iter().for_each(|pid| unix::signal_process(pid, SIGTERM));
+    let end = Instant::now() + limit;
+    while !owned(prefix).is_empty() && Instant::now() < end {
+        std::thread::sleep(POLL_INTERVAL);
+    }
+}
+
+/// Returns the living processes below this one whose owner has this prefix.
+fn owned(prefix: &str) -> Vec<i32> {
+    // The children of a runner that hangs in the kernel are not orphans yet.
+    let own = rustix::process::getpid().as_raw_nonzero().get();
+    let living = descendants(own).into_iter().filter(|pid| !is_zombie(*pid));
+    living.filter(|pid| owner_of(*pid).is_some_and(|owner| owner.starts_with(prefix))).collect()
+}
+
 /// Kills the processes below this one whose owner has this prefix, and everything below
 /// them. Returns the killed processes. Reaps none.
 pub fn kill_owned(prefix: &str) -> Vec<LeakedProcess> {
     let mut left = Vec::new();
     loop {
-        // The children of a runner that hangs in the kernel are not orphans yet.
-        let own = rustix::process::getpid().as_raw_nonzero().get();
-        let owned = descendants(own).into_iter().filter(|pid| !is_zombie(*pid));
-        let owned = owned.filter(|pid| owner_of(*pid).is_some_and(|o| o.starts_with(prefix)));
-        let found: Vec<_> = owned.flat_map(with_descendants).map(describe).collect();
+        let found = owned(prefix).into_iter().flat_map(with_descendants).map(describe).collect();
         let before = left.len();
         add_new(&mut left, found);
         for process in &left[before..] {

@@ -8,7 +8,7 @@ use rtf_model::protocol::Notification;
 use rtf_model::{EventKind, ExitStatus, HookId, Output, Source, Stream};
 use rtf_process::codec::{self, HostMessage};
 use rtf_process::task::ProcessStream;
-use rtf_process::{signal_group, tree};
+use rtf_process::tree::{self, SignalReach, Tree};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use super::journal_close::TimedEvent;
@@ -17,6 +17,8 @@ use crate::hook::{HOOK_KILLED, HookJudgement, RUN_REQUEST};
 
 /// The time between SIGTERM and the kill.
 const TERM_GRACE: Duration = Duration::from_secs(1);
+/// The time between looks at the processes that a stopped hook has left.
+const POLL_INTERVAL: Duration = Duration::from_millis(5);
 /// The limit for reading the outputs of an ended process.
 const DRAIN_LIMIT: Duration = Duration::from_millis(500);
 /// The longest output kept of each stream, in bytes.
@@ -32,6 +34,8 @@ pub type StreamEnds = Vec<(ProcessStream, OwnedFd)>;
 pub(super) struct HookProcess {
     pub hook: HookId,
     pub pid: i32,
+    /// The scope of the process.
+    pub scope: String,
     pub streams: StreamEnds,
     pub deadline: Instant,
     pub judgement: HookJudgement,
@@ -42,10 +46,11 @@ pub(super) fn supervise(
     process: HookProcess,
     signals: &mut GuardSignals,
 ) -> (Option<String>, Vec<TimedEvent>) {
-    let HookProcess { hook, pid, streams, deadline, judgement } = process;
+    let HookProcess { hook, pid, scope, streams, deadline, judgement } = process;
     let mut supervisor = HookSupervisor {
         source: Source::Hook(hook),
         pid,
+        tree: Tree::new(pid, &scope),
         streams,
         deadline,
         judgement,
@@ -62,6 +67,7 @@ pub(super) fn supervise(
 struct HookSupervisor {
     source: Source,
     pid: i32,
+    tree: Tree,
     streams: StreamEnds,
     deadline: Instant,
     judgement: HookJudgement,
@@ -82,6 +88,8 @@ impl HookSupervisor {
         loop {
             match unix::ended(self.pid) {
                 Ok(Some(status)) => {
+                    self.tree.leader_ended();
+                    self.wait_for_tree(signals);
                     // A leftover process may continue to write.
                     let end = Instant::now() + DRAIN_LIMIT;
                     while self.read(None, Duration::ZERO) && Instant::now() < end {}
@@ -101,11 +109,25 @@ impl HookSupervisor {
         }
     }
 
+    /// After a stop, the processes that are left have the rest of the grace.
+    fn wait_for_tree(&mut self, signals: &mut GuardSignals) {
+        while self.kills == 1
+            && self.deadline > Instant::now()
+            && !signals.requests_kill()
+            && !self.tree.living(&[]).is_empty()
+        {
+            self.read(Some(signals), POLL_INTERVAL);
+        }
+        if self.kills > 0 {
+            self.tree.kill(&[]);
+        }
+    }
+
     fn on_deadline(&mut self) {
         self.judgement.limit_passed();
         match self.kills {
-            0 => signal_group(self.pid, libc::SIGTERM),
-            _ => tree::kill_tree(self.pid),
+            0 => self.tree.signal(libc::SIGTERM, SignalReach::Tree, &[]),
+            _ => self.tree.kill(&[]),
         }
         self.kills += 1;
         self.deadline = Instant::now() + TERM_GRACE;

@@ -98,6 +98,7 @@ fn adopt(hook: &HookSpec, running: RunningHook) -> StartedHook {
             StartedHook::Running(HookProcess {
                 hook: hook.id,
                 pid,
+                scope: running.start.scope,
                 streams: running.streams,
                 deadline: running.at + hook.limit,
                 judgement: HookJudgement::adopted(hook.plugin.is_some(), hook.limit),
@@ -160,6 +161,7 @@ fn spawn(hook: &HookSpec, start: &HookStart, context: &HookContext<'_>) -> io::R
     Ok(HookProcess {
         hook: hook.id,
         pid: i32::try_from(child.id()).map_err(io::Error::other)?,
+        scope: start.scope.clone(),
         streams,
         deadline: Instant::now() + hook.limit,
         judgement: HookJudgement::new(hook.plugin.is_some(), hook.limit),

@@ -3,7 +3,6 @@
 use std::os::fd::BorrowedFd;
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -11,6 +10,7 @@ use rtf_model::{HookId, Source, SuiteId, TestId};
 use rustix::net::SendFlags;
 use tokio::sync::Notify;
 
+use super::fixture_stop::FixtureStop;
 use super::message::{GuardMessage, HookSpec, HookStart};
 use super::message_queue::MessageQueue;
 use crate::fixture_values::FixtureValues;
@@ -30,9 +30,6 @@ pub struct Link {
     /// Carries heartbeats; closed by the guard's death.
     heartbeat: Option<UnixStream>,
     forked: Instant,
-    /// The number of running suites with hooks. Without hooks, the guard needs no messages
-    /// about tests and fixtures.
-    suites_with_hooks: AtomicUsize,
     messages_lost: Notify,
 }
 
@@ -52,7 +49,6 @@ impl Link {
             queue: Mutex::new(queue),
             heartbeat: None,
             forked: Instant::now(),
-            suites_with_hooks: AtomicUsize::new(0),
             messages_lost: Notify::new(),
         }
     }
@@ -75,10 +71,6 @@ impl Link {
     /// Waits until messages were lost, because the guard did not read for a long time.
     pub(crate) async fn wait_for_lost_messages(&self) {
         self.messages_lost.notified().await;
-    }
-
-    fn has_hooks(&self) -> bool {
-        self.suites_with_hooks.load(Ordering::Relaxed) > 0
     }
 
     /// The run starts; `start` is zero on the clock of its events. `scratch_dir` is its
@@ -104,7 +96,6 @@ impl Link {
             self.send_resources(suite.id, locks, None);
         }
         if !suite.hooks.is_empty() {
-            self.suites_with_hooks.fetch_add(1, Ordering::Relaxed);
             let leases: Vec<_> = prepared.leases().collect();
             for leases in leases.chunks(MAX_DESCRIPTORS) {
                 self.send_resources(suite.id, leases, None);
@@ -127,9 +118,6 @@ impl Link {
         let has_hooks = !prepared.plan.hooks.is_empty();
         if has_hooks || has_resources {
             self.send(&GuardMessage::SuiteFinished { suite: prepared.plan.id });
-        }
-        if has_hooks {
-            self.suites_with_hooks.fetch_sub(1, Ordering::Relaxed);
         }
     }
 
@@ -158,19 +146,21 @@ impl Link {
     }
 
     /// A process was started. The guard also keeps the streams of a hook's or fixture's
-    /// process, so that it can continue without the runner.
+    /// process, so that it can continue without the runner. `stop` is how a fixture is stopped.
     pub(crate) fn process_started(
         &self,
         source: Source,
         pid: i32,
         streams: &[(ProcessStream, BorrowedFd<'_>)],
+        stop: Option<&FixtureStop>,
     ) {
         let (names, descriptors): (Vec<_>, Vec<_>) = streams.iter().copied().unzip();
-        let message = match source {
-            Source::Test(_) => return,
-            _ if !self.has_hooks() => return,
-            Source::Hook(hook) => GuardMessage::HookStarted { hook, pid, streams: names },
-            Source::Fixture(_) => GuardMessage::FixtureStarted { pid, streams: names },
+        let message = match (source, stop) {
+            (Source::Hook(hook), _) => GuardMessage::HookStarted { hook, pid, streams: names },
+            (Source::Fixture(_), Some(stop)) => {
+                GuardMessage::FixtureStarted { pid, streams: names, stop: stop.clone() }
+            }
+            (Source::Test(_) | Source::Fixture(_), _) => return,
         };
         self.send_with(&message, &descriptors);
     }
@@ -181,7 +171,7 @@ impl Link {
     }
 
     pub(crate) fn process_ended(&self, source: Source, pid: i32) {
-        if matches!(source, Source::Fixture(_)) && self.has_hooks() {
+        if matches!(source, Source::Fixture(_)) {
             self.send(&GuardMessage::FixtureEnded { pid });
         }
     }

@@ -9,6 +9,7 @@ use rtf_model::{EventKind, HookId, SuiteId, TestId, Trigger};
 use rtf_process::task::ProcessStream;
 use serde::{Deserialize, Serialize};
 
+use super::fixture_stop::FixtureStop;
 use crate::fixture_values::FixtureValues;
 use crate::hook::request;
 use rtf_plan::plan::{HookBody, HookPlan, SuitePlan};
@@ -80,12 +81,14 @@ pub enum GuardMessage {
         /// Why the robot may not be in a safe state.
         problem: Option<String>,
     },
-    /// A fixture's process was started. It must remain alive while hooks run.
+    /// A fixture's process was started. It must remain alive while hooks run, and is stopped then.
     FixtureStarted {
         /// Its process.
         pid: i32,
         /// The streams whose descriptors come with this line, in this order.
         streams: Vec<ProcessStream>,
+        /// How it is stopped.
+        stop: FixtureStop,
     },
     /// A fixture's process has ended.
     FixtureEnded {

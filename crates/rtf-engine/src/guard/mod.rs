@@ -5,12 +5,13 @@
 //! the runner dies: the hooks, which of them have started, and streams that must remain
 //! open. The runner sends a heartbeat every second; a silent runner is killed.
 //!
-//! After the runner's death, [`recovery`] kills its tests, runs the abort hooks, kills
-//! everything that is left, and closes the journal. After the guard's death, the runner
+//! After the runner's death, [`recovery`] ends its tests, runs the abort hooks, stops the
+//! fixtures, kills everything that is left, and closes the journal. After the guard's death, the runner
 //! tears down in order, as after Ctrl-C.
 //!
 //! Rationale: `docs/decisions/0007-the-guard.md`.
 
+mod fixture_stop;
 mod heartbeat;
 mod hook_process;
 mod hook_run;
@@ -32,6 +33,7 @@ use std::time::{Duration, Instant};
 
 use rtf_process::resources;
 
+pub(crate) use fixture_stop::FixtureStop;
 pub(crate) use link::HEARTBEAT_INTERVAL;
 pub use link::Link;
 pub(crate) use message::HookStart;

@@ -1,5 +1,5 @@
-//! The guard's work after the death of the runner: kills its tests, runs the abort hooks,
-//! kills everything that is left, and closes the journal.
+//! The guard's work after the death of the runner: ends its tests, runs the abort hooks, stops
+//! the fixtures, kills everything that is left, and closes the journal.
 
 use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
@@ -11,6 +11,7 @@ use rustix::event::{PollFd, PollFlags, poll};
 
 use crate::fixture_values::FixtureValues;
 
+use super::fixture_stop::{GuardedFixture, is_kill_requested, stop_fixtures};
 use super::hook_run::{self, HookContext};
 use super::journal_close::{self, FinishedHook, MissingEvents, TimedEvent};
 use super::message::HookSpec;
@@ -22,6 +23,9 @@ use super::unix::GuardSignals;
 /// The limit for the end of killed processes. One that hangs in the kernel, for example in
 /// a driver, is reported and left.
 pub(super) const SWEEP_LIMIT: Duration = Duration::from_secs(5);
+
+/// How long tests may take to end after SIGTERM. Hooks wait for it.
+const TERM_GRACE: Duration = Duration::from_secs(1);
 
 /// The host that stops processes of fixtures, as `/proc/PID/comm` shows it.
 const FAULTS_PROGRAM: &str = "rtf-host-faults";
@@ -60,11 +64,15 @@ pub fn recover(
     // The guard starts processes only now: its descriptors must not leak into hooks.
     let _ = prepare_process();
     // No hook runs in parallel with a test, or with an injected fault.
+    if !is_kill_requested(&mut signals) {
+        tree::terminate_owned("test ", TERM_GRACE);
+    }
     let mut left = tree::kill_owned("test ");
     if tree::kill_program(FAULTS_PROGRAM) {
         tree::continue_all();
     }
-    drain_streams(state.fixtures.into_values().flatten().map(|(_, end)| end).collect());
+    let mut fixtures = state.fixtures;
+    drain_streams(fixtures.values_mut().flat_map(GuardedFixture::take_streams).collect());
     let run_dir = state.run.as_ref().and_then(|run| run.journal.parent());
     let hook_reason = format!("the runner died: {reason}");
     let finished_hooks = finished_hooks(&state.hooks);
@@ -83,6 +91,7 @@ pub fn recover(
         let masked = |event: TimedEvent| TimedEvent { kind: values.mask(event.kind), ..event };
         events.extend(more.into_iter().map(masked));
     }
+    stop_fixtures(fixtures, &mut signals);
     // The holders of namespaces belong to rtf: they are not reported.
     for (_, holder) in state.resources.values().filter_map(|held| held.network.as_ref()) {
         tree::kill_child(*holder);

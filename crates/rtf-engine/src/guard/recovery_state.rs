@@ -10,6 +10,7 @@ use rtf_model::{HookId, SuiteId, TestId};
 use rtf_process::namespaces::Namespaces;
 use rtf_process::task::ProcessStream;
 
+use super::fixture_stop::GuardedFixture;
 use super::hook_process::StreamEnds;
 use super::message::{GuardMessage, HookSpec, HookStart};
 use crate::fixture_values::FixtureValues;
@@ -25,8 +26,8 @@ pub struct RecoveryState {
     /// The hooks of the suites.
     pub hooks: Vec<GuardedHook>,
     pub tests: RunningTests,
-    /// The streams of the fixtures' processes.
-    pub fixtures: HashMap<i32, StreamEnds>,
+    /// The fixtures' processes.
+    pub fixtures: HashMap<i32, GuardedFixture>,
     /// The values that the fixtures of the suites have provided.
     pub values: HashMap<SuiteId, FixtureValues>,
     /// The exclusive resources of the running suites.
@@ -174,8 +175,9 @@ impl RecoveryState {
                 }
             }
             M::HookFinished { hook, problem } => self.finish_hook(hook, problem, now),
-            M::FixtureStarted { pid, streams } => {
-                self.fixtures.insert(pid, announced(streams, received));
+            M::FixtureStarted { pid, streams, stop } => {
+                let streams = announced(streams, received);
+                self.fixtures.insert(pid, GuardedFixture { streams, stop });
             }
             M::FixtureEnded { pid } => drop(self.fixtures.remove(&pid)),
         }
@@ -193,10 +195,6 @@ impl RecoveryState {
         self.resources.remove(&suite);
         self.tests.remove(&suite);
         self.hooks_of(suite).for_each(|hook| hook.status = HookStatus::SuiteFinished);
-        // Without hooks, the runner does not report the end of fixtures.
-        if self.hooks.iter().all(|hook| matches!(hook.status, HookStatus::SuiteFinished)) {
-            self.fixtures.clear();
-        }
     }
 
     fn hooks_of(&mut self, suite: SuiteId) -> impl Iterator<Item = &mut GuardedHook> {
@@ -293,23 +291,5 @@ mod tests {
         let mut messages = both();
         messages.push(GuardMessage::SuiteFinished { suite: one });
         assert_eq!(after(messages), (vec![1], vec!["hand".to_owned()]));
-    }
-
-    #[test]
-    fn fixtures_of_a_suite_without_hooks_are_kept_as_long_as_there_are_hooks() {
-        let mut state = RecoveryState::default();
-        let mut apply = |message| {
-            state.apply(message, &mut VecDeque::new(), Instant::now());
-            state.fixtures.len()
-        };
-        for suite in [0, 1] {
-            apply(GuardMessage::SuiteStarted {
-                suite: SuiteId(suite),
-                hooks: vec![hook(suite, suite)],
-            });
-        }
-        apply(GuardMessage::FixtureStarted { pid: 1, streams: Vec::new() });
-        assert_eq!(apply(GuardMessage::SuiteFinished { suite: SuiteId(0) }), 1);
-        assert_eq!(apply(GuardMessage::SuiteFinished { suite: SuiteId(1) }), 0);
     }
 }

@@ -8,7 +8,7 @@ use rtf_model::Source;
 use rtf_process::task::{HostId, ProcessOwner, ProcessStream, TaskContext};
 
 use crate::events::EventSink;
-use crate::guard::Link;
+use crate::guard::{FixtureStop, Link};
 
 /// The resources of a run that its suites share.
 #[derive(Debug)]
@@ -47,10 +47,15 @@ pub enum DebugMode {
 
 impl RunContext {
     /// Returns the owner of a process that belongs to this test, fixture or hook.
-    pub(super) fn process_owner(&self, source: Source) -> Arc<dyn ProcessOwner> {
+    /// `stop` is how a fixture is stopped.
+    pub(super) fn process_owner(
+        &self,
+        source: Source,
+        stop: Option<FixtureStop>,
+    ) -> Arc<dyn ProcessOwner> {
         let (sink, guard) = (self.sink.clone(), self.guard.clone());
         let debug = self.debug.filter(|_| matches!(source, Source::Test(_)));
-        Arc::new(SourceOwner { source, sink, guard, debug })
+        Arc::new(SourceOwner { source, sink, guard, debug, stop })
     }
 }
 
@@ -70,11 +75,12 @@ struct SourceOwner {
     sink: Arc<dyn EventSink>,
     guard: Arc<Link>,
     debug: Option<DebugOptions>,
+    stop: Option<FixtureStop>,
 }
 
 impl ProcessOwner for SourceOwner {
     fn process_started(&self, pid: i32, streams: &[(ProcessStream, BorrowedFd<'_>)]) {
-        self.guard.process_started(self.source, pid, streams);
+        self.guard.process_started(self.source, pid, streams, self.stop.as_ref());
         if let Some(debug) = self.debug.filter(|debug| debug.mode == DebugMode::Terminal) {
             (debug.notify)(debug.mode, pid);
         }

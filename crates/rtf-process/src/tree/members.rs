@@ -64,8 +64,14 @@ impl Tree {
         self.has_leader = false;
     }
 
-    /// Whether the leader is alive.
+    /// Whether the leader is alive, or was not reaped.
     pub fn has_leader(&self) -> bool {
+        self.has_leader
+    }
+
+    /// Looks whether the leader is alive.
+    pub fn leader_lives(&mut self) -> bool {
+        self.has_leader &= status_of(self.leader).is_some_and(|status| status.is_alive);
         self.has_leader
     }
 

@@ -87,6 +87,7 @@ mod shared_hosts;
 mod shown_parts;
 mod signals;
 mod stopped_runner;
+mod stopped_trees;
 mod test_notifications;
 mod testrunner;
 mod testrunner_defects;

@@ -159,7 +159,7 @@ fn a_detached_grandchild_goes_with_its_fixture() {
     let journal = folder.journal();
     let left =
         journal.events.iter().any(|event| matches!(event.kind, EventKind::ProcessesLeaked { .. }));
-    assert!(left, "what was left is told");
+    assert!(!left, "it was asked to stop with its fixture");
     assert!(nothing_left(&folder));
 }
 

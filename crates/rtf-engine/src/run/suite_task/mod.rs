@@ -236,7 +236,7 @@ impl SuiteTask<'_> {
             Effect::Spawn { host, source, start } => self.spawn(host, source, start),
             Effect::Join { host, on, source, request, plugin } => {
                 let leak_owner = format!("test {}/{}", self.plan.name, plugin.name);
-                let owner = self.context.process_owner(source);
+                let owner = self.context.process_owner(source, None);
                 let attachments_dir = attachments_dir(source, host);
                 let assignment = Assignment {
                     host,

@@ -5,7 +5,7 @@ use rtf_model::{Source, TestId};
 use tokio::sync::mpsc;
 
 use super::SuiteTask;
-use crate::guard::HookStart;
+use crate::guard::{FixtureStop, HookStart};
 use crate::run::context::{DebugMode, attachments_dir};
 use crate::run::machine::{HostId, Program, StartRequest};
 use crate::run::probes;
@@ -16,6 +16,9 @@ use rtf_process::spawner::Spawner;
 use rtf_process::ssh::{self, RemoteCommand};
 use rtf_process::start_gate;
 use rtf_process::task::{AttachedJob, ProcessJob, run_process, watch_attached};
+
+/// What the processes of a plug-in get.
+const SIGTERM: i32 = 15;
 
 impl SuiteTask<'_> {
     pub(super) fn spawn(&mut self, host: HostId, source: Source, start: StartRequest) {
@@ -41,9 +44,10 @@ impl SuiteTask<'_> {
         if let Some(start) = self.triggered.take_if(|_| matches!(source, Source::Hook(_))) {
             self.context.guard.hook_starting(HookStart { scope: launch.scope.clone(), ..start });
         }
+        let stop = self.fixture_stop(source, process.as_deref(), &launch);
         let job = ProcessJob {
             host,
-            owner: self.context.process_owner(source),
+            owner: self.context.process_owner(source, stop),
             launch,
             attachments_dir: attachments_dir(source, host),
             is_grouped: self.is_grouped(source),
@@ -58,6 +62,26 @@ impl SuiteTask<'_> {
     pub(super) fn test(&self, test: TestId) -> Option<&TestPlan> {
         let first = self.plan.tests.first()?.id.index();
         self.plan.tests.get(test.index() - first)
+    }
+
+    /// How the guard stops a fixture's process.
+    fn fixture_stop(
+        &self,
+        source: Source,
+        process: Option<&ProcessPlan>,
+        launch: &Launch,
+    ) -> Option<FixtureStop> {
+        let Source::Fixture(id) = source else { return None };
+        let plan = self.plan.fixtures.iter().find(|plan| plan.id == id)?;
+        let scope = launch.scope.clone();
+        let (signal, tree_signal, grace) = match process {
+            Some(process) if process.remote.is_some() => (None, None, process.stop_grace),
+            Some(process) => {
+                (Some(process.stop_signal), Some(process.stop_signal), process.stop_grace)
+            }
+            None => (None, Some(SIGTERM), plan.limits.teardown),
+        };
+        Some(FixtureStop { scope, signal, tree_signal, grace })
     }
 
     /// Joining a control group may take longer than a short test: only long-lived processes, and

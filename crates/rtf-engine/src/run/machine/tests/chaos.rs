@@ -182,6 +182,10 @@ pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool)
         9 if choice > 128 => world.feed(Input::Host(host, ProcessEvent::Dying)),
         9 => world.feed(notify(Notification::Collapsed { reason: "gone".to_owned() })),
         10 => world.exit(source, ExitStatus::Signal(9)),
+        12 if choice > 160 => {
+            let ended = ProcessEvent::LeaderEnded(ExitStatus::Code(0), Vec::new());
+            world.feed(Input::Host(host, ended));
+        }
         11 | 12 => world.exit(source, ExitStatus::Code(0)),
         13 => world.feed(notify(report(choice))),
         14 if choice < 112 => world.feed(question_or_finding(host, which, choice)),

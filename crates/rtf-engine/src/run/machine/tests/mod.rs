@@ -22,6 +22,7 @@ mod sequence;
 mod shared;
 mod soak;
 mod stop_and_skip;
+mod stopped_trees;
 mod subscriptions;
 mod unkillable;
 mod unresponsive;

@@ -32,7 +32,9 @@ pub fn effect_of(effect: &Effect) -> String {
         Effect::CloseChannel(_) => "→ close the channel".to_owned(),
         Effect::DumpStack(..) => "→ take a stack dump".to_owned(),
         Effect::Signal(_, signal, SignalReach::Group) => format!("→ signal {signal}"),
-        Effect::Signal(_, signal, reach) => format!("→ signal {signal} ({reach:?})"),
+        Effect::Signal(_, signal, reach) => {
+            format!("→ signal {signal} to {reach:?}").to_lowercase()
+        }
         Effect::KillTree(_) => "→ kill the tree".to_owned(),
         other => format!("→ {other:?}"),
     }
