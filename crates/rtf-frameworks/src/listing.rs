@@ -46,6 +46,7 @@ pub fn run(mut command: Command, limit: Duration) -> Result<Listed, ListError> {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     command.process_group(0).env_remove(SESSION_VARIABLE);
     let program = command.get_program().to_string_lossy().into_owned();
+    rtf_host::reset_signals(&mut command);
     let started = command.spawn();
     let mut child =
         started.map_err(|error| ListError::new(not_started(command.get_program(), &error)))?;

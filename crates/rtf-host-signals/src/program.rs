@@ -54,6 +54,7 @@ impl Program {
     pub fn start(index: usize, settings: &ProgramSettings) -> Result<Self, String> {
         let failed = |error: std::io::Error| format!("{}: {error}", shown(&settings.words));
         let mut command = command::of(&settings.words)?;
+        rtf_host::reset_signals(&mut command);
         let mut child = command.process_group(0).spawn().map_err(failed)?;
         let output = child.stdout.take().ok_or("the program has no output")?;
         rustix::io::ioctl_fionbio(&output, true).map_err(|error| failed(error.into()))?;

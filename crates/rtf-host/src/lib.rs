@@ -36,3 +36,4 @@ pub use sampling::Sample;
 pub use serve::serve;
 pub use session::{FaultRequest, Inquiry, OpenError, Session};
 pub use suite_clock::SuiteClock;
+pub use unix::reset_signals;

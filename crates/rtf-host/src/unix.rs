@@ -7,10 +7,42 @@ use std::io;
 use std::os::fd::{BorrowedFd, FromRawFd, RawFd};
 use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::os::unix::net::UnixStream;
+use std::os::unix::process::CommandExt;
 use std::path::Path;
+use std::process::Command;
 
 use rustix::io::FdFlags;
 use rustix::net::SendFlags;
+
+/// The signals that the C libraries use themselves. Their `posix_spawn` starts programs that ignore
+/// them, and their functions refuse them.
+const LIBRARY_SIGNALS: std::ops::RangeInclusive<c_int> = 32..=34;
+/// The size of the kernel's set of signals.
+const KERNEL_SET_BYTES: usize = 8;
+/// At least the size of the kernel's `sigaction`; all zeroes are the default action.
+const KERNEL_ACTION_BYTES: usize = 64;
+
+/// Makes a command start with no signal blocked, and none ignored by a C library, as a shell starts
+/// programs. The runner has the same for the programs that it starts.
+pub fn reset_signals(command: &mut Command) {
+    let reset = || {
+        let action = [0_u8; KERNEL_ACTION_BYTES];
+        for signal in LIBRARY_SIGNALS {
+            let (new, old) = (action.as_ptr(), std::ptr::null_mut::<u8>());
+            // SAFETY: the kernel reads the action.
+            unsafe { libc::syscall(libc::SYS_rt_sigaction, signal, new, old, KERNEL_SET_BYTES) };
+        }
+        // SAFETY: the set is initialised before it is used.
+        unsafe {
+            let mut none = std::mem::zeroed::<libc::sigset_t>();
+            libc::sigemptyset(&raw mut none);
+            libc::sigprocmask(libc::SIG_SETMASK, &raw const none, std::ptr::null_mut());
+        }
+        Ok(())
+    };
+    // SAFETY: between fork and exec, only system calls are made.
+    unsafe { command.pre_exec(reset) };
+}
 
 /// Takes over a descriptor that the runner left open for this process, and
 /// closes it in programs that the plug-in starts.

@@ -19,9 +19,9 @@ use rtf_model::protocol::{
 
 use rustix::net::SendFlags;
 
-use crate::descriptor_passing;
 use crate::namespaces::Namespaces;
 use crate::spawn_request::SpawnRequest;
+use crate::{descriptor_passing, posix_spawn};
 use crate::{resources, tree, unix};
 
 const SIGKILL: i32 = 9;
@@ -174,6 +174,7 @@ impl ForkServerProcess {
         if let Some(namespaces) = &spec.namespaces {
             namespaces.enter(&mut command);
         }
+        posix_spawn::reset_signals(&mut command);
         unix::let_inherit(&theirs)?;
         let pid_of = |child: &io::Result<Child>| i32::try_from(child.as_ref().ok()?.id()).ok();
         let process = tree::start_own_child(|| command.spawn(), pid_of);

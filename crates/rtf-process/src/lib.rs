@@ -15,6 +15,7 @@ pub mod launch;
 mod liveness;
 pub mod namespaces;
 pub mod network;
+mod posix_spawn;
 pub mod probe;
 pub mod process;
 pub mod resources;
@@ -28,4 +29,5 @@ pub mod tree;
 mod unix;
 mod usage;
 
+pub use posix_spawn::reset_signals;
 pub use unix::{adopt_orphans, prepare_process, signal_group, signal_process, unreadable_proc};

@@ -6,7 +6,7 @@ use std::os::fd::{AsFd, OwnedFd};
 use rtf_model::ExitStatus;
 use tokio::io::unix::AsyncFd;
 use tokio::net::UnixStream;
-use tokio::process::{Child, ChildStderr, ChildStdout};
+use tokio::process::{ChildStderr, ChildStdout};
 
 use crate::foreground::Foreground;
 use crate::{tree, unix};
@@ -32,21 +32,21 @@ pub struct StartedProcess {
 #[derive(Debug)]
 pub struct ProcessEnd {
     pid: i32,
-    child: StartedChild,
-}
-
-/// Who notifies the runner of the end.
-#[derive(Debug)]
-pub(crate) enum StartedChild {
-    /// Tokio, for an executed process.
-    Executed(Child),
-    /// The kernel, for a forked process.
-    Forked(AsyncFd<OwnedFd>),
+    process: AsyncFd<OwnedFd>,
 }
 
 impl ProcessEnd {
-    pub(crate) fn new(pid: i32, child: StartedChild) -> Self {
-        Self { pid, child }
+    /// The end of a child of this process, which is killed on errors.
+    pub(crate) fn open(pid: i32) -> io::Result<Self> {
+        match unix::open_process(pid) {
+            Ok(process) => Ok(Self { pid, process }),
+            Err(error) => {
+                tree::kill_tree(pid);
+                unix::await_end(pid);
+                tree::remove_own_child(pid);
+                Err(error)
+            }
+        }
     }
 
     /// Waits for the end. Cancel safe.
@@ -54,15 +54,12 @@ impl ProcessEnd {
     /// # Errors
     /// The kernel does not report the status.
     pub async fn wait(&mut self) -> io::Result<ExitStatus> {
-        let status = match &mut self.child {
-            StartedChild::Executed(child) => unix::exit_status(child.wait().await?),
-            StartedChild::Forked(process) => loop {
-                let mut ready = process.readable().await?;
-                match unix::take_status(process.as_fd())? {
-                    Some(status) => break status,
-                    None => ready.clear_ready(),
-                }
-            },
+        let status = loop {
+            let mut ready = self.process.readable().await?;
+            match unix::take_status(self.process.as_fd())? {
+                Some(status) => break status,
+                None => ready.clear_ready(),
+            }
         };
         tree::remove_own_child(self.pid);
         Ok(status)
@@ -70,13 +67,11 @@ impl ProcessEnd {
 }
 
 impl Drop for ProcessEnd {
-    /// Kills an abandoned process, as tokio does for executed ones.
+    /// Kills an abandoned process.
     fn drop(&mut self) {
-        if let StartedChild::Forked(process) = &self.child
-            && tree::is_own_child(self.pid)
-        {
+        if tree::is_own_child(self.pid) {
             tree::kill_tree(self.pid);
-            let _ = unix::take_status(process.as_fd());
+            let _ = unix::take_status(self.process.as_fd());
         }
     }
 }

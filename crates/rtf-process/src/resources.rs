@@ -51,11 +51,14 @@ pub fn limit_descriptors(pid: i32) {
     }
 }
 
-/// Sets the user's descriptor limit for a command that does not wait for a greeting.
-pub fn limit_descriptors_of(command: &mut Command) {
-    if let Some(given) = USER_LIMIT.get().copied() {
+/// Sets the user's descriptor limit for a command that does not wait for a greeting. Returns
+/// whether the runner has another one.
+pub fn limit_descriptors_of(command: &mut Command) -> bool {
+    let given = USER_LIMIT.get().copied();
+    if let Some(given) = given {
         unix::before_exec(command, move || Ok(setrlimit(Resource::Nofile, given)?));
     }
+    given.is_some()
 }
 
 /// Makes the kernel choose this process and its future children before the runner when

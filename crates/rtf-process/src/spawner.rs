@@ -2,24 +2,27 @@
 //!
 //! Starting a process blocks until the kernel has executed it, and a channel's
 //! descriptor must be inheritable for just that moment: both need a single thread.
-//! `posix_spawn` is used, so that the duration does not grow with the runner's memory.
+//! [`posix_spawn`] is used, so that the duration does not grow with the runner's memory.
 //! A plain fork is needed only for a process that enters a namespace, and for one that
 //! starts without a greeting while the runner's descriptor limit differs from the user's.
 
-use std::io;
+use std::fs::File;
+use std::io::{self, PipeReader};
 use std::os::fd::{AsFd, AsRawFd, OwnedFd};
-use std::process::Stdio;
+use std::os::unix::process::CommandExt;
+use std::process::{Command, Stdio};
 use std::sync::Arc;
 
 use rtf_model::protocol::{CHANNEL_VARIABLE, FORK_VARIABLE};
 use tokio::net::UnixStream;
-use tokio::process::{Child, ChildStderr, ChildStdout, Command};
+use tokio::process::{ChildStderr, ChildStdout};
 use tokio::sync::oneshot;
 
 use crate::foreground::Foreground;
 use crate::fork_server::{ChildEnds, ForkMode, ForkServers};
 use crate::namespaces::Namespaces;
-use crate::process::{ProcessEnd, StartedChild, StartedProcess};
+use crate::posix_spawn;
+use crate::process::{ProcessEnd, StartedProcess};
 use crate::resources::{self, DescriptorReserve};
 use crate::spawn_request::{ProcessRole, SpawnRequest, Streams};
 use crate::{ssh, start_gate, tree, unix};
@@ -165,19 +168,19 @@ fn fork(
     let forked = tree::start_own_child(|| servers.fork(request, &ends), |pid| *pid);
     let Some(pid) = forked else { return Ok(None) };
     unix::lead_group(pid);
-    let stdout = ChildStdout::from_std(OwnedFd::from(stdout).into())?;
-    let stderr = ChildStderr::from_std(OwnedFd::from(stderr).into())?;
-    let child =
-        unix::open_process(pid).map(StartedChild::Forked).inspect_err(|_| tree::kill_tree(pid))?;
-    let end = ProcessEnd::new(pid, child);
-    Ok(Some(StartedProcess {
-        pid,
-        channel: None,
-        stdout: Some(stdout),
-        stderr: Some(stderr),
-        foreground: None,
-        end,
-    }))
+    let end = ProcessEnd::open(pid)?;
+    let (stdout, stderr) = outputs(Some(stdout), Some(stderr))?;
+    Ok(Some(StartedProcess { pid, channel: None, stdout, stderr, foreground: None, end }))
+}
+
+/// The runner's ends of the outputs of a process.
+fn outputs(
+    stdout: Option<PipeReader>,
+    stderr: Option<PipeReader>,
+) -> io::Result<(Option<ChildStdout>, Option<ChildStderr>)> {
+    let stdout = stdout.map(|end| ChildStdout::from_std(OwnedFd::from(end).into()));
+    let stderr = stderr.map(|end| ChildStderr::from_std(OwnedFd::from(end).into()));
+    Ok((stdout.transpose()?, stderr.transpose()?))
 }
 
 /// Whether a command takes its channel as its standard input.
@@ -195,24 +198,17 @@ fn execute(
     };
     let mut command = Command::new(program);
     command.args(arguments).envs(request.env.iter().map(|(name, value)| (name, value)));
-    command.process_group(0).kill_on_drop(true);
-    set_streams(&mut command, request.streams);
     if let Some(dir) = &request.working_dir {
         command.current_dir(dir);
-    }
-    if let Some(namespaces) = &request.namespaces {
-        namespaces.enter(command.as_std_mut());
-    }
-    if channel.is_none() {
-        resources::limit_descriptors_of(command.as_std_mut());
     }
     if channel.is_some() && mode == ForkMode::Never {
         // Hosts that fork programs follow it.
         command.env(FORK_VARIABLE, "never");
     }
-    let mut theirs = None;
+    let mut streams = StandardStreams::open(request.streams)?;
+    let (mut theirs, has_channel) = (None, channel.is_some());
     match channel {
-        Some(host) if uses_stdin(&request.command) => drop(command.stdin(host)),
+        Some(host) if uses_stdin(&request.command) => streams.theirs[0] = Some(host),
         Some(host) => {
             unix::let_inherit(&host)?;
             command.env(CHANNEL_VARIABLE, format!("fd:{}", host.as_raw_fd()));
@@ -220,32 +216,67 @@ fn execute(
         }
         None => {}
     }
-    let pid_of = |child: &io::Result<Child>| i32::try_from(child.as_ref().ok()?.id()?).ok();
-    let child = tree::start_own_child(|| command.spawn(), pid_of);
+    let StandardStreams { theirs: ends, stdout, stderr } = streams;
+    let start = || match fork_steps(request, has_channel, &mut command) {
+        true => fork_and_execute(&mut command, ends),
+        false => posix_spawn::spawn(&command, &ends),
+    };
+    let pid = tree::start_own_child(start, |pid| pid.as_ref().ok().copied());
     // Only the new process may keep the other end.
     drop(theirs);
-    let mut child = child?;
-    let pid = child.id().and_then(|pid| i32::try_from(pid).ok()).unwrap_or_default();
+    let pid = pid?;
+    let end = ProcessEnd::open(pid)?;
     // Before its greeting: it does not read the terminal yet.
     let foreground = match request.streams {
         Streams::Terminal => Some(Foreground::give(pid)?),
         _ => None,
     };
-    let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
-    let end = ProcessEnd::new(pid, StartedChild::Executed(child));
+    let (stdout, stderr) = outputs(stdout, stderr)?;
     Ok(StartedProcess { pid, channel: None, stdout, stderr, foreground, end })
 }
 
-fn set_streams(command: &mut Command, streams: Streams) {
-    let (stdin, stdout, stderr) = match streams {
-        Streams::Both => (Stdio::null(), Stdio::piped(), Stdio::piped()),
-        Streams::StdoutOnly => (Stdio::null(), Stdio::piped(), Stdio::null()),
-        Streams::None => (Stdio::null(), Stdio::null(), Stdio::null()),
-        Streams::Terminal => {
+/// Adds the steps between fork and execution; false if there are none.
+fn fork_steps(request: &SpawnRequest, has_channel: bool, command: &mut Command) -> bool {
+    if let Some(namespaces) = &request.namespaces {
+        namespaces.enter(command);
+    }
+    let is_limited = !has_channel && resources::limit_descriptors_of(command);
+    is_limited || request.namespaces.is_some()
+}
+
+fn fork_and_execute(command: &mut Command, ends: posix_spawn::Streams) -> io::Result<i32> {
+    let [stdin, stdout, stderr] = ends.map(|end| end.map_or_else(Stdio::inherit, Stdio::from));
+    command.stdin(stdin).stdout(stdout).stderr(stderr).process_group(0);
+    posix_spawn::reset_signals(command);
+    i32::try_from(command.spawn()?.id()).map_err(io::Error::other)
+}
+
+/// The standard streams of a new process.
+struct StandardStreams {
+    theirs: posix_spawn::Streams,
+    stdout: Option<PipeReader>,
+    stderr: Option<PipeReader>,
+}
+
+impl StandardStreams {
+    fn open(streams: Streams) -> io::Result<Self> {
+        let null = || {
+            io::Result::Ok(OwnedFd::from(File::options().read(true).write(true).open("/dev/null")?))
+        };
+        if streams == Streams::Terminal {
             // It inherits this. The shell could not continue it.
             unix::ignore_suspension();
-            (Stdio::inherit(), Stdio::inherit(), Stdio::inherit())
+            return Ok(Self { theirs: [None, None, None], stdout: None, stderr: None });
         }
-    };
-    command.stdin(stdin).stdout(stdout).stderr(stderr);
+        let output = |is_captured: bool| {
+            if !is_captured {
+                return io::Result::Ok((None, null()?));
+            }
+            let (ours, theirs) = io::pipe()?;
+            Ok((Some(ours), theirs.into()))
+        };
+        let (stdout, out) = output(streams != Streams::None)?;
+        let (stderr, err) = output(streams == Streams::Both)?;
+        Ok(Self { theirs: [Some(null()?), Some(out), Some(err)], stdout, stderr })
+    }
 }

@@ -261,16 +261,6 @@ pub fn await_end(pid: i32) {
     }
 }
 
-/// Converts the exit status.
-pub fn exit_status(status: std::process::ExitStatus) -> ExitStatus {
-    use std::os::unix::process::ExitStatusExt;
-    match (status.code(), status.signal()) {
-        (Some(code), _) => ExitStatus::Code(code),
-        (None, Some(signal)) => ExitStatus::Signal(signal),
-        (None, None) => ExitStatus::Code(-1),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -153,6 +153,7 @@ fn spawn(hook: &HookSpec, start: &HookStart, context: &HookContext<'_>) -> io::R
         theirs = Some(host);
     }
     resources::limit_descriptors_of(&mut command);
+    rtf_process::reset_signals(&mut command);
     let child = command.spawn();
     drop(theirs);
     let mut child = child?;

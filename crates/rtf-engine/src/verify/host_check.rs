@@ -107,6 +107,7 @@ fn spawn(group: &CheckGroup, files: &[&Path]) -> std::io::Result<Child> {
     command.env_remove(protocol::CHANNEL_VARIABLE);
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     unix::in_own_group(&mut command);
+    rtf_process::reset_signals(&mut command);
     command.spawn()
 }
 

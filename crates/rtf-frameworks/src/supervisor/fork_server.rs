@@ -97,6 +97,7 @@ impl ForkServer {
         command.env(PROGRAM_FORKS_VARIABLE, format!("{}{point}", theirs.as_raw_fd()));
         command.env(BIND_VARIABLE, "1");
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        rtf_host::reset_signals(&mut command);
         let process = command.process_group(0).spawn().ok()?;
         Some(Self { socket, process, session, report })
     }

@@ -79,8 +79,11 @@ pub(super) fn run(
     test.running.set(None);
     let status = wait_for(pid).map_err(|error| format!("the program was lost: {error}"))?;
     process.drain(cases);
-    // What the program left in its group must not run next to the next process.
-    let _ = rustix::process::kill_process_group(pid, Signal::KILL);
+    // What the program left in its group must not run next to the next process. After a stop,
+    // there is none, and the runner ends it after the grace.
+    if !test.is_stopping() {
+        let _ = rustix::process::kill_process_group(pid, Signal::KILL);
+    }
     let RunningProcess { mut reader, mut termination, last_error, .. } = process;
     if test.is_stopping() {
         termination = Termination::Stopped;
@@ -162,6 +165,7 @@ fn execute(mut command: Command, ends: &ProgramEnds<'_>) -> Result<Pid, String> 
     command.stdin(Stdio::null()).stdout(stdout).stderr(stderr);
     command.env(SESSION_VARIABLE, format!("fd:{}", ends.session.as_raw_fd()));
     command.process_group(0);
+    rtf_host::reset_signals(&mut command);
     let child = command.spawn();
     let child = child.map_err(|error| listing::not_started(command.get_program(), &error))?;
     Ok(Pid::from_child(&child))

@@ -86,6 +86,7 @@ mod selection;
 mod shared_hosts;
 mod shown_parts;
 mod signals;
+mod start_signals;
 mod stopped_runner;
 mod stopped_trees;
 mod test_notifications;

@@ -22,7 +22,7 @@ fn a_hanging_test_is_dumped_interrupted_terminated_and_killed() {
     5.0  test-stopping cause=timeout reason=run did not end within 5s test=0
     5.0    → take a stack dump
     5.0  stack-dumped source={test:0} text=#0 pause
-    6.0    → signal 15
+    6.0    → signal 15 to tree
     7.0    → kill the tree
     7.0  test-finished exit={signal:9} phase=run reason=run did not end within 5s test=0 verdict=timed-out
     7.0  suite-finished
@@ -64,7 +64,7 @@ fn a_fixture_that_is_not_ready_in_time_is_broken_and_torn_down() {
     10.0    → take a stack dump
     10.0  fixture-broken fixture=0 reason=set-up failed: it was not ready within 10s
     10.0  fixture-stopping fixture=0
-    13.0    → signal 15
+    13.0    → signal 15 to tree
     14.0    → kill the tree
     14.0  fixture-stopped fixture=0 problem=set-up failed: it was not ready within 10s
     14.0  test-skipped reason=fixture `fixture0` is broken: set-up failed: it was not ready within 10s test=0

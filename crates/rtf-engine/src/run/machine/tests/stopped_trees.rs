@@ -50,7 +50,18 @@ fn a_fixture_has_stopped_when_its_last_process_has() {
     world.exit(FIXTURE, ExitStatus::Signal(2));
     world.finish();
     assert!(world.record.is_green());
-    assert_snapshot!(world.transcript(), @"");
+    assert_snapshot!(world.transcript(), @"
+    0.0  test-phase phase=setup test=0
+    0.0  test-phase phase=run test=0
+    0.0  test-phase phase=tear-down test=0
+    0.0    → close the channel
+    0.0  test-finished exit={code:0} phase=exit test=0 verdict=passed
+    0.0  fixture-stopping fixture=0
+    0.0    → signal 2
+    0.0    → signal 2 to left
+    0.0  fixture-stopped fixture=0
+    0.0  suite-finished
+    ");
 }
 
 #[test]
@@ -63,7 +74,20 @@ fn processes_that_remain_are_asked_and_then_killed() {
     world.input(FIXTURE, ProcessEvent::Exited(ExitStatus::Signal(2), left()));
     world.finish();
     assert!(!world.record.is_green());
-    assert_snapshot!(world.transcript(), @"");
+    assert_snapshot!(world.transcript(), @"
+    0.0  test-phase phase=setup test=0
+    0.0  test-phase phase=run test=0
+    0.0  test-phase phase=tear-down test=0
+    0.0    → close the channel
+    0.0  test-finished exit={code:0} phase=exit test=0 verdict=passed
+    0.0  fixture-stopping fixture=0
+    0.0    → signal 2
+    2.0    → signal 2 to tree
+    2.0    → signal 2 to left
+    4.0    → kill the tree
+    4.0  fixture-stopped fixture=0 problem=it did not stop within 4s and was killed; `arm` still ran and was killed
+    4.0  suite-finished
+    ");
 }
 
 #[test]
@@ -77,7 +101,17 @@ fn the_remains_of_a_fixture_that_ends_by_itself_are_leaked_and_asked_to_stop() {
     world.exit(TEST, ExitStatus::Code(0));
     world.exit(FIXTURE, ExitStatus::Code(1));
     world.finish();
-    assert_snapshot!(world.transcript(), @"");
+    assert_snapshot!(world.transcript(), @"
+    0.0  processes-leaked processes=[{command:arm,pid:7}] source={fixture:0}
+    0.0  fixture-collapsed fixture=0 reason=its process ended with exit code 1
+    0.0  test-stopping cause=collapse reason=fixture `fixture0` collapsed: its process ended with exit code 1 test=0
+    0.0  fixture-broken fixture=0 reason=its process ended with exit code 1
+    0.0  test-finished exit={code:0} phase=run reason=fixture `fixture0` collapsed: its process ended with exit code 1 test=0 verdict=collapsed
+    0.0  fixture-stopping fixture=0
+    0.0    → signal 2 to tree
+    0.0  fixture-stopped fixture=0
+    0.0  suite-finished
+    ");
 }
 
 #[test]
@@ -93,7 +127,12 @@ fn the_processes_of_a_plug_in_may_end_by_themselves_before_they_are_asked() {
     world.exit(FIXTURE, ExitStatus::Code(0));
     world.finish();
     assert!(world.record.is_green());
-    assert_snapshot!(world.transcript(), @"");
+    assert_snapshot!(world.transcript(), @"
+    0.0    → close the channel
+    1.0    → signal 15 to tree
+    1.0  fixture-stopped fixture=0
+    1.0  suite-finished
+    ");
 }
 
 #[test]
@@ -109,7 +148,17 @@ fn the_processes_of_a_test_have_the_rest_of_its_grace() {
     world.next_deadline();
     world.input(TEST, ProcessEvent::Exited(ExitStatus::Code(0), left()));
     world.finish();
-    assert_snapshot!(world.transcript(), @"");
+    assert_snapshot!(world.transcript(), @"
+    2.0  test-slow test=0
+    5.0  test-stopping cause=timeout reason=run did not end within 5s test=0
+    5.0    → take a stack dump
+    5.0  stack-dumped source={test:0} text=#0 pause
+    5.0    → close the channel
+    6.0    → signal 15 to tree
+    7.0    → kill the tree
+    7.0  test-finished exit={code:0} phase=run reason=run did not end within 5s; `arm` still ran and was killed test=0 verdict=timed-out
+    7.0  suite-finished
+    ");
 }
 
 #[test]
@@ -124,5 +173,10 @@ fn the_processes_of_a_hook_have_the_grace_after_its_limit() {
     world.next_deadline();
     world.input(HOOK, ProcessEvent::Exited(ExitStatus::Signal(15), left()));
     world.finish();
-    assert_snapshot!(world.transcript(), @"");
+    assert_snapshot!(world.transcript(), @"
+    4.0    → signal 15 to tree
+    5.0    → kill the tree
+    5.0  hook-finished hook=0 problem=it did not end within 4s; `arm` still ran and was killed
+    5.0  suite-finished
+    ");
 }
