@@ -110,8 +110,10 @@ impl TreeStop {
         }
         if !self.is_asked && (!has_leader || elapsed >= self.stop.grace / 2) {
             self.is_asked = true;
+            // Processes that the stop has started may park the robot.
+            let reach = self.stop.signal.map_or(SignalReach::Tree, |_| SignalReach::Left);
             if let Some(signal) = self.stop.tree_signal {
-                self.tree.signal(signal, SignalReach::Tree, &[]);
+                self.tree.signal(signal, reach, &[]);
             }
         }
         true

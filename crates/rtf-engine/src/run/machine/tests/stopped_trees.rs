@@ -82,7 +82,7 @@ fn processes_that_remain_are_asked_and_then_killed() {
     0.0  test-finished exit={code:0} phase=exit test=0 verdict=passed
     0.0  fixture-stopping fixture=0
     0.0    → signal 2
-    2.0    → signal 2 to tree
+    2.0    → signal 2 to left
     2.0    → signal 2 to left
     4.0    → kill the tree
     4.0  fixture-stopped fixture=0 problem=it did not stop within 4s and was killed; `arm` still ran and was killed
@@ -129,7 +129,7 @@ fn the_processes_of_a_plug_in_may_end_by_themselves_before_they_are_asked() {
     assert!(world.record.is_green());
     assert_snapshot!(world.transcript(), @"
     0.0    → close the channel
-    1.0    → signal 15 to tree
+    1.0    → signal 15 to left
     1.0  fixture-stopped fixture=0
     1.0  suite-finished
     ");
