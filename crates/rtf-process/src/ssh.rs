@@ -162,6 +162,23 @@ mod tests {
         assert_eq!((line.as_str(), shell.wait().unwrap().code()), ("up\nasked\n", Some(7)));
     }
 
+    /// In its group, and in another session.
+    #[test]
+    fn processes_that_outlive_the_command_have_the_grace() {
+        for arm in ["sh -c", "setsid sh -c"] {
+            let park = "trap 'sleep 0.2; echo parked; exit' TERM; echo up; \
+                while :; do sleep 0.01; done";
+            let script = format!("{arm} {} & wait", shell_words::quote(park));
+            let command = ssh(&["sh", "-c", &script], &[]);
+            let (mut shell, mut life, mut printed) = start(command.last().unwrap());
+            let mut text = String::new();
+            printed.read_line(&mut text).unwrap();
+            life.write_all(&signal_line(15, SignalReach::Group)).unwrap();
+            printed.read_to_string(&mut text).unwrap();
+            assert_eq!((text.as_str(), shell.wait().unwrap().code()), ("up\nparked\n", Some(143)));
+        }
+    }
+
     #[test]
     fn the_end_of_its_channel_stops_it_and_processes_that_left_its_group() {
         let script = "setsid sleep 1000 & echo up; exec sleep 1000";

@@ -27,6 +27,7 @@ ask_others() {
   done 2>/dev/null
 }
 
+# Kills everything that the command started.
 sweep() {
   rounds=5
   while [ "$rounds" -gt 0 ]; do
@@ -46,7 +47,10 @@ sweep() {
   while read -r signal reach <&3; do
     case "$signal $reach" in
     KILL*) sweep ;;
-    *tree) ask_others "$signal" && continue ;;
+    *tree)
+      ask_others "$signal"
+      continue
+      ;;
     esac
     kill -s "$signal" -- "-$$"
   done

@@ -7,7 +7,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::{OWN_TASKS, children_of, descendants, is_own_child, scope_of, stat_of, unix};
+use super::{OWN_TASKS, children_of, is_own_child, scope_of, stat_of, unix};
 
 /// The fields of `/proc/PID/stat` after the name.
 const STATE: usize = 0;
@@ -99,7 +99,7 @@ impl Tree {
                     found.insert(pid, started);
                 }
             }
-            queue.extend(descendants(pid));
+            queue.extend(children_of(format!("/proc/{pid}/task")));
         }
         self.known = found;
         let mut pids: Vec<i32> = self.known.keys().copied().collect();
