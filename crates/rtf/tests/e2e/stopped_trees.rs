@@ -30,7 +30,7 @@ sys.exit(subprocess.Popen(sys.argv[1:], start_new_session=True).wait())\n";
 /// As `xvfb-run`.
 const SCRIPT: &str = "#!/bin/sh\ntrap 'exit 0' TERM\n\"$@\" &\nwait\n";
 
-/// The wrappers, and how many signals the arm gets behind each of them.
+/// The wrappers, and how many signals the arm gets behind each of them, at most.
 const WRAPPERS: [(&str, &str, &str); 10] = [
     ("wait", "sh -c '{arm} & wait'", "1"),
     ("shell", "sh -c '{arm}; exit $?'", "1"),
@@ -39,8 +39,8 @@ const WRAPPERS: [(&str, &str, &str); 10] = [
     ("cleared", "sh -c 'env -i /usr/bin/env {arm}; exit $?'", "1"),
     ("setsid", "setsid --wait {arm}", "1"),
     ("launcher", "python3 launcher.py {arm}", "1"),
-    // It passes the signal on, and so does the process group.
-    ("timeout", "timeout 1000 {arm}", "2"),
+    // It passes the signal on, to its child and to the process group.
+    ("timeout", "timeout 1000 {arm}", "3"),
     ("script", "sh script.sh {arm}", "1"),
     ("deaf", "python3 deaf.py {arm}", "1"),
 ];
