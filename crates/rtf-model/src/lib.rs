@@ -6,17 +6,20 @@
 //! [`protocol`] module holds the messages between the runner and the host
 //! processes that load plug-ins.
 //!
-//! This crate is plain data: no I/O, no threads, no clock.
+//! This crate is plain data: no I/O, no threads, no clock. [`plain_text`] and [`failure_line`] read
+//! what a program printed.
 
 mod clock;
 mod diagnostic;
 mod event;
+mod failure_line;
 mod fault;
 mod finding;
 mod ids;
 mod journal;
 mod manifest;
 mod order;
+mod plain_text;
 mod private_resources;
 pub mod protocol;
 mod question;
@@ -37,6 +40,7 @@ pub use event::{
     Output, Parameter, Phase, RunStarted, Significance, Source, StopCause, Stream, SuitePlanned,
     TestFinished, TestPlanned, Trigger, signal_name, value_text,
 };
+pub use failure_line::failure_line;
 pub use fault::{
     FaultAction, FaultAmount, FaultConfig, FaultInjected, FaultKind, FaultRecord, FaultTarget,
     FaultTime, FaultsConfig, NetworkFault, ValuesFault,
@@ -46,6 +50,7 @@ pub use ids::{CaseId, FixtureId, HookId, Micros, SuiteId, TestId};
 pub use journal::{Damage, EventCheck, LineCheck, LineChecker, LineSealer, StreamChecker};
 pub use manifest::{Manifest, Origin, Revision};
 pub use order::{OrderChecker, OrderError};
+pub use plain_text::plain_text;
 pub use private_resources::{SuiteNetwork, SuitePort, SuitePrepared, SuiteVariable};
 pub use question::{AnswerChannel, Question, QuestionAsked, QuestionClosed, Respondent};
 pub use record::{
