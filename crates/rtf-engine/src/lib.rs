@@ -12,6 +12,7 @@ pub mod guard;
 mod hook;
 pub mod isolate;
 pub mod locks;
+mod log_watch;
 mod plan_texts;
 mod plugin_request;
 pub mod run;

@@ -86,6 +86,8 @@ pub enum FixtureTimer {
     RestartDue,
     /// The limit for the end of its dying process.
     Death,
+    /// The interval at which a line that has no end yet is searched.
+    UnfinishedLine,
 }
 
 /// How to start a process.

@@ -17,6 +17,11 @@ impl LineBuffer {
         Self(holds_lines.then(Default::default))
     }
 
+    /// Whether incomplete lines are held back.
+    pub fn holds_lines(&self) -> bool {
+        self.0.is_some()
+    }
+
     /// Takes output; returns the output that is passed on now.
     pub fn push<'b>(&mut self, stream: Stream, bytes: &'b [u8]) -> Cow<'b, [u8]> {
         let Some(lines) = &mut self.0 else { return Cow::Borrowed(bytes) };

@@ -13,7 +13,6 @@ mod io;
 mod judge;
 mod kill_escalation;
 mod line_buffer;
-mod log_watch;
 mod output_capture;
 mod suite;
 mod test;

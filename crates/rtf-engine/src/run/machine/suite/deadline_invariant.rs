@@ -45,7 +45,7 @@ impl DeadlineInvariant {
             Deadline::Suite
             | Deadline::Shutdown
             | Deadline::Test(_, TestTimer::Slow)
-            | Deadline::Fixture(_, FixtureTimer::CheckDue) => false,
+            | Deadline::Fixture(_, FixtureTimer::CheckDue | FixtureTimer::UnfinishedLine) => false,
             _ => true,
         }
     }
