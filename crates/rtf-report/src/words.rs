@@ -100,6 +100,22 @@ pub(crate) fn first_line(text: &str) -> String {
     if lines.next().is_some() { first + " …" } else { first }
 }
 
+/// As [`first_line`], with at most 400 characters: for lists in which each reason is one line.
+pub(crate) fn short_line(text: &str) -> String {
+    shortened(&first_line(text), 400).into_owned()
+}
+
+/// The first `limit` characters of a text, and how many follow.
+pub(crate) fn shortened(text: &str, limit: usize) -> Cow<'_, str> {
+    match text.char_indices().nth(limit) {
+        None => text.into(),
+        Some((end, _)) => {
+            let more = count(text[end..].chars().count() as u64, "more character");
+            format!("{} … ({more})", &text[..end]).into()
+        }
+    }
+}
+
 /// The last `limit` lines of a text, and how many lines there are in all.
 pub(crate) fn tail(text: &str, limit: usize) -> (impl Iterator<Item = &str>, usize) {
     let total = text.lines().count();

@@ -47,7 +47,7 @@ fn failed_case(
     let name = style::paint(BOLD, &escape::line(case.path));
     let verdict = style::paint(style::of_verdict(verdict), verdict.as_str());
     page.line(&format!("    case {name}  {verdict}"));
-    page.inner_fact("reason", &words::first_line(case.reason()));
+    page.inner_fact("reason", &words::short_line(case.reason()));
     if let Some(location) = cases.locations(case).next() {
         page.inner_fact("at", &escape::line(&location.to_string()));
     }
@@ -70,7 +70,7 @@ pub(super) fn unexpected(page: &mut ConsoleLines, options: &ConsoleOptions, reco
         let name = escape::line(&record.full_name(test.plan.test)).into_owned();
         page.line(&format!("  {}", style::paint(BAD, &name)));
         let advice = known_failure::red_reason(record, test).unwrap_or_default();
-        page.fact("reason", &words::first_line(&advice));
+        page.fact("reason", &words::short_line(&advice));
         mark(page, test);
         if let Some(command) = (options.rerun)(record, test.plan.test, None) {
             page.fact("rerun", &escape::line(&command));
@@ -90,7 +90,7 @@ pub(super) fn known(page: &mut ConsoleLines, record: &Record) {
         let name = style::paint(LOUD, &escape::line(&record.full_name(test.plan.test)));
         let (word, verdict) = (known_failure::word(test), test.final_verdict());
         page.line(&format!("  {name}  {word} ({verdict})"));
-        page.fact("reason", &words::first_line(test.reason().unwrap_or(verdict.as_str())));
+        page.fact("reason", &words::short_line(test.reason().unwrap_or(verdict.as_str())));
         mark(page, test);
         if let Some(cases) = TestCases::of(test) {
             page.fact("cases", &cases.totals().describe());

@@ -52,7 +52,7 @@ fn failed_test(
     let red_reason = known_failure::red_reason(record, test);
     match red_reason.as_deref().or(test.reason()) {
         Some(reason) if red_reason.is_some() || !is_reported => {
-            page.fact("reason", &words::first_line(reason));
+            page.fact("reason", &words::short_line(reason));
         }
         None if !record.is_complete() => page.fact("reason", "the run ended before the test did"),
         _ => {}
@@ -120,7 +120,7 @@ fn first_problem(page: &mut ConsoleLines, test: &TestRecord) {
     let first = attempt.and_then(|attempt| explain::own_failures(attempt).next());
     let is_open = attempt.is_none_or(|attempt| attempt.finished.is_none());
     if let (true, Some(failure)) = (is_open, first) {
-        page.fact("before", &words::first_line(&failure.text));
+        page.fact("before", &words::short_line(&failure.text));
     }
     let violation = attempt.and_then(|attempt| attempt.violations().next());
     let place = first.and_then(|message| message.location.as_ref());

@@ -26,7 +26,7 @@ pub(super) fn finished(
         return failed(page, options, record, (id, run));
     }
     if options.verbosity > Verbosity::Quiet {
-        let reason = style::paint(DIM, &words::first_line(cause::short(record, &run.reason)));
+        let reason = style::paint(DIM, &words::short_line(cause::short(record, &run.reason)));
         page.entry((GOOD, "hook"), &time, &format!("{title}: done  {reason}"));
     }
     result_details::leaked(page, &title, &run.leaked);
@@ -69,7 +69,7 @@ pub(super) fn summary(page: &mut ConsoleLines, options: &ConsoleOptions, record:
                 let log = Some(log).filter(|_| !run.output.is_empty());
                 let title = style::paint(BOLD, &title(record, hook.plan.hook, run));
                 page.line(&format!("  {title}"));
-                page.fact("reason", &words::first_line(problem));
+                page.fact("reason", &words::short_line(problem));
                 if let Some(log) = log.and_then(|log| options.shown(&log)) {
                     page.fact("log", &log);
                 }

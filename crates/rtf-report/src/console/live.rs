@@ -302,7 +302,7 @@ impl Live<'_> {
             StopCause::Protocol => "protocol",
             StopCause::Finding => "finding",
         };
-        let reason = words::first_line(reason);
+        let reason = words::short_line(reason);
         page.remark((LOUD, "stopping"), &format!("{} ({cause}): {reason}", self.test(id)));
     }
 
@@ -316,7 +316,7 @@ impl Live<'_> {
 
     fn skipped(&self, page: &mut ConsoleLines, id: TestId, reason: &str) {
         let verdict = (style::of_verdict(Verdict::Skipped), Verdict::Skipped.as_str());
-        let reason = words::first_line(cause::short(self.record, reason));
+        let reason = words::short_line(cause::short(self.record, reason));
         page.entry(verdict, "", &format!("{}: {reason}", self.test(id)));
     }
 }

@@ -84,12 +84,16 @@ impl Console {
     #[must_use]
     pub fn new(out: Box<dyn Write + Send>, options: ConsoleOptions) -> Self {
         let progress = if options.progress { Progress::on_terminal() } else { Progress::hidden() };
+        let page = match options.everything() {
+            Some(everything) => ConsoleLines::limited(everything),
+            None => ConsoleLines::default(),
+        };
         Self {
             options,
             out: UntilDisconnect::new(out),
             background: None,
             bar: Bar::hidden(),
-            page: ConsoleLines::default(),
+            page,
             written: Micros::default(),
             progress,
             verbose: Verbose::default(),
@@ -120,6 +124,7 @@ impl Console {
 
     fn flush(&mut self, at: Micros) -> Result<(), ReportError> {
         self.written = at;
+        self.page.end_entry();
         if self.page.len() == 0 {
             return Ok(());
         }

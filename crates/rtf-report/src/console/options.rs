@@ -58,6 +58,15 @@ pub struct ConsoleOptions {
 }
 
 impl ConsoleOptions {
+    /// The advice that shows what a console that is not verbose leaves out.
+    pub(super) fn everything(&self) -> Option<String> {
+        let how = match &self.folder {
+            Some(dir) => format!("rtf show --verbose {}", words::quoted(&dir.to_string_lossy())),
+            None => "--verbose".to_owned(),
+        };
+        (self.verbosity < Verbosity::Verbose).then(|| format!("`{}` shows all", escape::line(&how)))
+    }
+
     /// A path in the run's directory, for display.
     pub(super) fn shown(&self, path: &Path) -> Option<String> {
         let path = self.folder.as_ref()?.join(path);

@@ -44,7 +44,7 @@ pub(super) fn case_finished(
     let reason = end.reason.as_deref().unwrap_or(end.verdict.as_str());
     let sink = &mut |tone, line: &str| page.detail(tone, line);
     if known {
-        return sink(Tone::Dim, &words::first_line(reason));
+        return sink(Tone::Dim, &words::short_line(reason));
     }
     explain::case_problems(reason, &reported, EXTENT, sink);
 }
@@ -84,7 +84,7 @@ pub(super) fn test_finished(
         advice.iter().for_each(|advice| explain::block(Tone::Bad, advice, "", sink));
         if known || skipped_itself {
             let reason = finished.reason.as_deref().unwrap_or_default();
-            sink(Tone::Dim, &words::first_line(reason));
+            sink(Tone::Dim, &words::short_line(reason));
         }
     }
     if known || skipped_itself || finished.verdict.is_green() {

@@ -68,7 +68,7 @@ pub(super) fn by_themselves(page: &mut ConsoleLines, record: &Record) {
 /// Lists tests or cases that were skipped for one reason.
 fn list(page: &mut ConsoleLines, noun: &str, reason: &str, names: &[String]) {
     let count = style::paint(LOUD, &words::count(names.len() as u64, noun));
-    page.line(&format!("  {count}: {}", words::first_line(reason)));
+    page.line(&format!("  {count}: {}", words::short_line(reason)));
     for name in names.iter().take(NAMES) {
         page.line(&format!("    {name}"));
     }

@@ -42,7 +42,7 @@ fn problems(page: &mut ConsoleLines, record: &Record) {
     let of_suite = |suite: &rtf_model::SuiteRecord| {
         let name = escape::line(&suite.plan.name).into_owned();
         let problems = record.fixture_problems(suite.plan.suite);
-        problems.into_iter().map(move |problem| format!("{name}: {}", words::first_line(&problem)))
+        problems.into_iter().map(move |problem| format!("{name}: {}", words::short_line(&problem)))
     };
     let problems: Vec<_> = record.suites.iter().flat_map(of_suite).collect();
     if problems.is_empty() {
@@ -71,7 +71,7 @@ fn flaky(page: &mut ConsoleLines, record: &Record) {
         page.line(&format!("  {name}  {attempts}"));
         let before = test.attempts.iter().filter_map(|attempt| attempt.finished.as_ref());
         for (_, finished) in before.filter(|(_, finished)| !finished.verdict.is_green()) {
-            let reason = words::first_line(finished.reason.as_deref().unwrap_or_default());
+            let reason = words::short_line(finished.reason.as_deref().unwrap_or_default());
             page.fact("before", &format!("{}: {reason}", finished.verdict));
         }
     }

@@ -209,7 +209,7 @@ fn case_finished(page: &mut ConsoleLines, record: &Record, end: &CaseFinished) {
         results::case_line(page, record, test, (case, word));
     }
     if let Some(reason) = &end.reason {
-        page.detail(Tone::Dim, &words::first_line(reason));
+        page.detail(Tone::Dim, &words::short_line(reason));
     }
 }
 
