@@ -38,7 +38,11 @@ pub(super) fn read(
             return None;
         }
     };
-    let value = reader.word(node, name)?;
+    let value = match name {
+        // A blank is a part of a prompt.
+        "log" | "log-bad" => reader.blank_preserving(node, name)?,
+        _ => reader.word(node, name)?,
+    };
     // `rtf` matches a log line when it is printed, and `file` only checks whether
     // the file exists: neither of them takes time to answer.
     let unused: &[&str] = match name {

@@ -70,8 +70,12 @@ fn source(
     provider: Provider,
 ) -> Option<DeclaredValueSource> {
     let sources = ["log", "file", "command"];
+    let mut value = |name| match name {
+        "log" => reader.blank_preserving(node, name),
+        _ => reader.word(node, name),
+    };
     let declared: Vec<_> =
-        sources.into_iter().filter_map(|name| Some((name, reader.word(node, name)?))).collect();
+        sources.into_iter().filter_map(|name| Some((name, value(name)?))).collect();
     match (provider, declared.as_slice()) {
         (Provider::Plugin, []) => Some(DeclaredValueSource::Plugin),
         (Provider::Plugin, [(name, value), ..]) => {

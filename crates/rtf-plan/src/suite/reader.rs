@@ -81,13 +81,18 @@ impl ElementReader<'_> {
 
     /// Reads a trimmed attribute that must not be empty.
     pub fn word(&mut self, node: Node<'_, '_>, name: &str) -> Option<Spanned<String>> {
+        let attribute = self.blank_preserving(node, name)?;
+        Some(Spanned::new(attribute.value.trim().to_owned(), attribute.span))
+    }
+
+    /// Reads an attribute that must not be blank, with the blanks at its ends.
+    pub fn blank_preserving(&mut self, node: Node<'_, '_>, name: &str) -> Option<Spanned<String>> {
         let attribute = self.attribute(node, name)?;
-        let trimmed = attribute.value.trim();
-        if trimmed.is_empty() {
+        if attribute.value.trim().is_empty() {
             self.wrong(name, &attribute, "is empty", None);
             return None;
         }
-        Some(Spanned::new(trimmed.to_owned(), attribute.span))
+        Some(attribute)
     }
 
     /// Reads a duration.

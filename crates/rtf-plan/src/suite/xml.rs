@@ -66,12 +66,50 @@ fn malformed(source: &SourceText, text: &str, error: &Error) -> Diagnostic {
     };
     let length = text[start..].chars().next().map_or(0, char::len_utf8);
     let label = source.label(Span::new(start..start + length), "");
-    Diagnostic::error("malformed-xml", explanation(error)).label(label)
+    let (message, hint) = match second_root(error, text, start) {
+        Some(message) => (message, Some(ONE_ROOT)),
+        None => (explanation(error, &text[..start]), hint(error)),
+    };
+    let problem = Diagnostic::error("malformed-xml", message).label(label);
+    match hint {
+        Some(hint) => problem.hint(hint),
+        None => problem,
+    }
+}
+
+/// What to do about further elements or text after the first element.
+const ONE_ROOT: &str = "an XML file has one element that contains all others: for several suites, \
+                        write several files";
+
+/// The message for what follows the first element, or precedes it.
+fn second_root(error: &Error, text: &str, start: usize) -> Option<String> {
+    let Error::UnknownToken(_) = error else { return None };
+    let rest = &text[start..];
+    let is_name = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | ':' | '.');
+    let name = rest.strip_prefix('<').map(|rest| rest.split(|c| !is_name(c)).next().unwrap_or(""));
+    match name {
+        Some("") => None,
+        Some(name) => Some(format!("malformed XML: a second first element, `<{name}>`")),
+        None => Some("malformed XML: text outside of the first element".into()),
+    }
+}
+
+/// A `<` in a text looks like the start of an element.
+fn hint(error: &Error) -> Option<&'static str> {
+    match error {
+        Error::InvalidChar2(..) | Error::InvalidChar(..) => {
+            Some("a `<` that begins no element is written `&lt;`")
+        }
+        _ => None,
+    }
 }
 
 /// Describes the error without its position, which is in the label.
-fn explanation(error: &Error) -> String {
+fn explanation(error: &Error, before: &str) -> String {
     match error {
+        Error::InvalidName(_) if before.ends_with('<') => {
+            "malformed XML: `<` in a text must be written `&lt;`".into()
+        }
         Error::UnexpectedCloseTag(open, close, _) => {
             format!("malformed XML: expected `</{open}>`, found `</{close}>`")
         }

@@ -74,6 +74,18 @@ fn invalid_process_fixtures() {
         ["no shell reads this command: the program gets `|` as an argument"]
     );
     assert_eq!(
+        fixture("<command>a $PORT</command>"),
+        ["no shell reads this command: the program gets `$PORT` as an argument"]
+    );
+    assert_eq!(
+        fixture("<command>PORT=1 a</command>"),
+        ["no shell reads this command: `PORT=1` is no program"]
+    );
+    assert_eq!(
+        fixture("<command>source setup.bash</command>"),
+        ["no shell reads this command: `source` is a command of a shell"]
+    );
+    assert_eq!(
         fixture("<command>a</command><command>b</command>"),
         ["`<command>` twice in one fixture"]
     );

@@ -63,6 +63,34 @@ fn an_ampersand_alone() {
 }
 
 #[test]
+fn a_comparison_in_a_text() {
+    assert_snapshot!(refused_suite("<suite name=\"arm\">\n  <monitor name=\"q\">q < 3</monitor>\n</suite>\n"), @r#"
+    error: malformed XML: `<` in a text must be written `&lt;`
+     --> arm.xml:2:24
+      |
+    2 |   <monitor name="q">q < 3</monitor>
+      |                        ^
+
+    1 error; nothing was started
+    "#);
+}
+
+#[test]
+fn two_suites_in_one_file() {
+    assert_snapshot!(refused_suite("<suite name=\"arm\"/>\n<suite name=\"leg\"/>\n"), @r#"
+    error: malformed XML: a second first element, `<suite>`
+     --> arm.xml:2:1
+      |
+    2 | <suite name="leg"/>
+      | ^
+      |
+      = help: an XML file has one element that contains all others: for several suites, write several files
+
+    1 error; nothing was started
+    "#);
+}
+
+#[test]
 fn an_end_tag_that_does_not_fit() {
     assert_snapshot!(refused_suite("<suite name=\"arm\">\n  <test>EncoderTest.lua</tset>\n</suite>\n"), @"
     error: malformed XML: expected `</test>`, found `</tset>`
