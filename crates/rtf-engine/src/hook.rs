@@ -4,10 +4,11 @@
 use std::time::Duration;
 
 use rtf_model::protocol::{Answer, Notification, Plugin, Reply};
-use rtf_model::{ExitStatus, MessageKind, Outcome, Trigger};
+use rtf_model::{ExitStatus, MessageKind, Outcome, Stream, Trigger};
 use rtf_plan::plan::{PluginPlan, SuitePlan};
 use serde_json::Value;
 
+use crate::log_watch::LogWatch;
 use crate::plugin_request;
 
 /// The id of `run-test` on a hook's channel.
@@ -52,12 +53,15 @@ pub struct HookJudgement {
     limit: Duration,
     answer: Option<Answer>,
     problem: Option<String>,
+    /// What it printed.
+    log: LogWatch,
 }
 
 impl HookJudgement {
     /// Starts the judgement of a hook with this limit.
     pub fn new(is_plugin: bool, limit: Duration) -> Self {
-        Self { is_plugin, is_adopted: false, limit, answer: None, problem: None }
+        let (answer, problem, log) = (None, None, LogWatch::default());
+        Self { is_plugin, is_adopted: false, limit, answer, problem, log }
     }
 
     /// Starts the judgement of a hook whose runner died.
@@ -70,11 +74,9 @@ impl HookJudgement {
         self.problem.get_or_insert(problem.into());
     }
 
-    /// Adds to the problem, if there is one.
-    pub fn add(&mut self, text: &str) {
-        if let Some(problem) = &mut self.problem {
-            *problem = format!("{problem}; {text}");
-        }
+    /// Takes its output into account: the reason of a bad end contains a line of it.
+    pub fn printed(&mut self, stream: Stream, bytes: &[u8]) {
+        self.log.push(stream, bytes);
     }
 
     /// Takes a notification of its host into account.
@@ -140,10 +142,10 @@ impl HookJudgement {
                 Some("it ended, but what it answered was lost with the runner".to_owned())
             }
             (None, Some(status)) if self.is_plugin => {
-                Some(format!("it ended with {status} before it was over"))
+                Some(self.log.explain(&format!("it ended with {status} before it was over")))
             }
             (_, Some(ExitStatus::Code(0)) | None) => None,
-            (_, Some(status)) => Some(format!("it ended with {status}")),
+            (_, Some(status)) => Some(self.log.explain(&format!("it ended with {status}"))),
         };
         self.problem.take().or(problem)
     }

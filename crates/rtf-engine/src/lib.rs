@@ -17,4 +17,5 @@ mod plan_texts;
 mod plugin_request;
 pub mod run;
 pub mod signal;
+mod unbuffered;
 pub mod verify;

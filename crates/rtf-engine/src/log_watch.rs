@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use regex::Regex;
-use rtf_model::{Stream, failure_line, plain_text};
+use rtf_model::{Stream, explain_failure, plain_text};
 
 /// How many of the last lines a failure report contains.
 const TAIL_LINES: usize = 50;
@@ -211,9 +211,9 @@ impl LogWatch {
         lines
     }
 
-    /// The line that says why the process failed.
-    pub fn failure_line(&self) -> Option<String> {
-        failure_line(&self.tail())
+    /// Appends the line that says why the process failed to the reason.
+    pub fn explain(&self, reason: &str) -> String {
+        explain_failure(reason, &self.tail())
     }
 }
 

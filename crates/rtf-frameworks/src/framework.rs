@@ -9,6 +9,7 @@ use rtf_model::ExitStatus;
 
 use crate::case::{CaseResult, ListedCase, Selection};
 use crate::case_reporter::CaseReporter;
+use crate::last_output::LastOutput;
 
 /// A test of a suite: a program of a framework, or files and directories with its tests.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -180,7 +181,7 @@ pub trait Framework {
     }
 
     /// The result of a test without cases.
-    fn program_result(&self, _end: ExitStatus, _last_error_line: &str) -> Option<CaseResult> {
+    fn program_result(&self, _end: ExitStatus, _output: &LastOutput) -> Option<CaseResult> {
         None
     }
 

@@ -13,6 +13,7 @@ mod elf;
 mod framework;
 mod frameworks;
 mod host;
+mod last_output;
 mod listing;
 mod preload;
 mod supervisor;

@@ -3,11 +3,13 @@
 use std::ffi::OsStr;
 use std::io::Read;
 use std::os::unix::process::CommandExt as _;
+use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 use rtf_model::protocol::SESSION_VARIABLE;
+use rtf_model::{INTERPRETER_BYTES, Interpreter};
 use rustix::process::{Pid, Signal, kill_process_group};
 
 use crate::framework::ListError;
@@ -98,12 +100,23 @@ const PACKAGES: [(&str, &str); 6] = [
 #[must_use]
 pub fn not_started(program: &OsStr, error: &std::io::Error) -> String {
     let program = program.to_string_lossy();
-    let message = format!("`{program}` cannot be started: {error}");
+    let interpreter = interpreter_problem(Path::new(&*program));
+    let why = interpreter.unwrap_or_else(|| error.to_string());
+    let message = format!("`{program}` cannot be started: {why}");
     let package = PACKAGES.iter().find(|(name, _)| *name == program);
     match package.filter(|_| error.kind() == std::io::ErrorKind::NotFound) {
         Some((_, package)) => format!("{message}\nDebian's package is `{package}`"),
         None => message,
     }
+}
+
+/// Why a file cannot be started although it exists: its interpreter is missing.
+fn interpreter_problem(program: &Path) -> Option<String> {
+    let mut head = Vec::new();
+    let file = std::fs::File::open(program).ok()?;
+    file.take(INTERPRETER_BYTES as u64).read_to_end(&mut head).ok()?;
+    let problem = Interpreter::of(&head)?.problem(|path| Path::new(path).exists())?;
+    Some(format!("{} ({})", problem.message, problem.hint))
 }
 
 /// Refuses arguments that `rtf` sets itself.
@@ -144,6 +157,11 @@ mod tests {
         assert!(message.ends_with("\nDebian's package is `golang-go`"), "{message}");
         let message = not_started(OsStr::new("./arm_test"), &missing);
         assert!(!message.contains("Debian"), "{message}");
+        let dir = tempfile::tempdir().unwrap();
+        let script = dir.path().join("test.sh");
+        std::fs::write(&script, "#!/usr/bin/nowhere\n").unwrap();
+        let message = not_started(script.as_os_str(), &missing);
+        assert!(message.contains("its interpreter `/usr/bin/nowhere` does not exist"), "{message}");
         let denied = std::io::Error::from(std::io::ErrorKind::PermissionDenied);
         assert!(!not_started(OsStr::new("go"), &denied).contains("Debian"));
     }

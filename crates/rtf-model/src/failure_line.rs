@@ -89,23 +89,44 @@ const FRAMES: [&str; 8] = [
     "exit status ",
 ];
 
-/// Returns the line that says why a program failed, of its last output, oldest line first:
-/// the last error that it or its runtime reports, otherwise the last line that resembles one,
-/// otherwise the last line. Without escape sequences, and with at most 200 characters; `None`
-/// without output.
+/// The line of a program's last output that explains its failure best, without escape sequences
+/// and with at most 200 characters.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FailureLine {
+    /// The line.
+    pub text: String,
+    /// Whether it reports a failure; otherwise it is only the last one.
+    pub is_cause: bool,
+}
+
+impl FailureLine {
+    /// Finds the line, oldest line first: the last error that the program or its runtime reports,
+    /// otherwise the last line that resembles one, otherwise the last line. `None` without output.
+    #[must_use]
+    pub fn find<S: AsRef<str>>(lines: &[S]) -> Option<Self> {
+        let lines: Vec<Cow<'_, str>> = lines.iter().map(|line| plain_text(line.as_ref())).collect();
+        let lines: Vec<&str> =
+            lines.iter().map(|line| line.trim_end()).filter(|line| !line.is_empty()).collect();
+        let last = |is: &dyn Fn(usize) -> bool| (0..lines.len()).rev().find(|index| is(*index));
+        let exceptions: Vec<usize> =
+            (0..lines.len()).filter_map(|index| exception(&lines, index)).collect();
+        let cause = last(&|index| exceptions.contains(&index) || is_any(lines[index], &CAUSES))
+            .or_else(|| last(&|index| is_any(lines[index], &HINTS)));
+        let index = cause
+            .or_else(|| last(&|index| !is_frame(lines[index])))
+            .or_else(|| lines.len().checked_sub(1))?;
+        Some(Self { text: shortened(lines[index].trim()), is_cause: cause.is_some() })
+    }
+}
+
+/// Appends the line of the last output that explains it to the reason of a failure.
 #[must_use]
-pub fn failure_line<S: AsRef<str>>(lines: &[S]) -> Option<String> {
-    let lines: Vec<Cow<'_, str>> = lines.iter().map(|line| plain_text(line.as_ref())).collect();
-    let lines: Vec<&str> =
-        lines.iter().map(|line| line.trim_end()).filter(|line| !line.is_empty()).collect();
-    let last = |is: &dyn Fn(usize) -> bool| (0..lines.len()).rev().find(|index| is(*index));
-    let exceptions: Vec<usize> =
-        (0..lines.len()).filter_map(|index| exception(&lines, index)).collect();
-    let found = last(&|index| exceptions.contains(&index) || contains_any(lines[index], &CAUSES))
-        .or_else(|| last(&|index| contains_any(lines[index], &HINTS)))
-        .or_else(|| last(&|index| !is_frame(lines[index])))
-        .or_else(|| lines.len().checked_sub(1));
-    found.map(|index| shortened(lines[index].trim()))
+pub fn explain_failure<S: AsRef<str>>(reason: &str, lines: &[S]) -> String {
+    match FailureLine::find(lines) {
+        Some(FailureLine { text, is_cause: true }) => format!("{reason}: {text}"),
+        Some(FailureLine { text, .. }) => format!("{reason}; its last line was: {text}"),
+        None => reason.to_owned(),
+    }
 }
 
 /// The line of the exception whose trace begins or ends in this line.
@@ -127,7 +148,7 @@ fn exception(lines: &[&str], index: usize) -> Option<usize> {
     (line.trim() == "stack traceback:").then(|| index.checked_sub(1)).flatten()
 }
 
-fn contains_any(line: &str, words: &[&str]) -> bool {
+fn is_any(line: &str, words: &[&str]) -> bool {
     let lower = format!(" {}", line.to_lowercase());
     let contains = |word: &&str| lower.contains(*word);
     words.iter().any(|word| contains(word))
@@ -266,14 +287,17 @@ mod tests {
             ),
         ] {
             let lines: Vec<&str> = output.split('\n').collect();
-            assert_eq!(failure_line(&lines).as_deref(), Some(reason), "{output}");
+            let found = FailureLine::find(&lines).map(|line| line.text);
+            assert_eq!(found.as_deref(), Some(reason), "{output}");
         }
-        assert_eq!(failure_line(&["", " ", "\x1b[0m"]), None);
+        assert_eq!(explain_failure("it ended", &["", " ", "\x1b[0m"]), "it ended");
+        assert_eq!(explain_failure("it ended", &["up", ""]), "it ended; its last line was: up");
+        assert_eq!(explain_failure("it ended", &["error: up"]), "it ended: error: up");
     }
 
     #[test]
     fn a_long_line_is_cut_between_characters() {
-        let line = failure_line(&["\u{e9}".repeat(500)]).unwrap();
+        let line = FailureLine::find(&["\u{e9}".repeat(500)]).unwrap().text;
         assert_eq!(line.chars().count(), MAX_CHARS);
         assert!(line.ends_with("\u{e9}…"));
     }

@@ -6,7 +6,7 @@
 //! [`protocol`] module holds the messages between the runner and the host
 //! processes that load plug-ins.
 //!
-//! This crate is plain data: no I/O, no threads, no clock. [`plain_text`] and [`failure_line`] read
+//! This crate is plain data: no I/O, no threads, no clock. [`plain_text`] and [`FailureLine`] read
 //! what a program printed.
 
 mod clock;
@@ -16,6 +16,7 @@ mod failure_line;
 mod fault;
 mod finding;
 mod ids;
+mod interpreter;
 mod journal;
 mod manifest;
 mod order;
@@ -40,13 +41,14 @@ pub use event::{
     Output, Parameter, Phase, RunStarted, Significance, Source, StopCause, Stream, SuitePlanned,
     TestFinished, TestPlanned, Trigger, signal_name, value_text,
 };
-pub use failure_line::failure_line;
+pub use failure_line::{FailureLine, explain_failure};
 pub use fault::{
     FaultAction, FaultAmount, FaultConfig, FaultInjected, FaultKind, FaultRecord, FaultTarget,
     FaultTime, FaultsConfig, NetworkFault, ValuesFault,
 };
 pub use finding::{Finding, FindingSeverity};
 pub use ids::{CaseId, FixtureId, HookId, Micros, SuiteId, TestId};
+pub use interpreter::{INTERPRETER_BYTES, Interpreter, InterpreterProblem};
 pub use journal::{Damage, EventCheck, LineCheck, LineChecker, LineSealer, StreamChecker};
 pub use manifest::{Manifest, Origin, Revision};
 pub use order::{OrderChecker, OrderError};

@@ -23,6 +23,7 @@ pub mod spawn_request;
 pub mod spawner;
 pub mod ssh;
 pub mod stack_dump;
+pub mod start_failure;
 pub mod start_gate;
 pub mod task;
 pub mod tree;

@@ -16,7 +16,7 @@ use crate::http;
 use crate::network::{Network, connect};
 use crate::spawn_request::{SpawnRequest, Streams};
 use crate::spawner::Spawner;
-use crate::tree;
+use crate::{start_failure, tree};
 
 /// How long another program may take to accept a connection.
 const ADDRESS_IN_USE_LIMIT: Duration = Duration::from_millis(200);
@@ -225,7 +225,7 @@ impl Prober {
             // The command could not write the rest.
             Ok(Ok((_, text))) if text.len() as u64 > MAX_VALUE_BYTES / 2 => Ok(text),
             Ok(Ok((status, _))) => Err(format!("{shown} ended with {status}")),
-            Ok(Err(error)) => Err(format!("{shown} cannot run: {error}")),
+            Ok(Err(error)) => Err(format!("{shown} cannot run: {}", why(command, &error))),
             Err(_) => Err(format!("{shown} did not answer within {limit:?}")),
         }
     }
@@ -240,7 +240,7 @@ impl Prober {
             (Ok((status, _)), Some(subject)) => {
                 Err(format!("the program that asks {subject} ended with {status}"))
             }
-            (Err(error), None) => Err(format!("`{shown}` cannot run: {error}")),
+            (Err(error), None) => Err(format!("`{shown}` cannot run: {}", why(command, &error))),
             (Err(error), Some(subject)) => Err(format!("{subject} cannot be asked: {error}")),
         }
     }
@@ -269,6 +269,11 @@ impl Prober {
         std::mem::forget(guard);
         Ok((status, String::from_utf8_lossy(&printed).trim().to_owned()))
     }
+}
+
+/// Why a command could not be started.
+fn why(command: &[String], error: &std::io::Error) -> String {
+    start_failure::describe(command.first().map_or("", String::as_str), error)
 }
 
 fn subject(probe: &ProbeSpec) -> String {

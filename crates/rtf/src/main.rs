@@ -36,7 +36,7 @@ use clap::{ArgMatches, FromArgMatches};
 use cli::{Cli, Color, ConfigVerb, Verb};
 use command::VerbResult;
 use rtf_engine::guard;
-use rtf_process::{network, start_gate};
+use rtf_process::{network, start_failure, start_gate};
 
 fn main() -> ExitCode {
     // First of all, because these processes must have one thread only.
@@ -96,6 +96,8 @@ fn run_hook_command() -> ExitCode {
     let mut command = std::env::args_os().skip(2).peekable();
     let program = command.peek().map(|program| program.to_string_lossy().into_owned());
     let (code, error) = start_gate::wait(command);
-    anstream::eprintln!("cannot execute `{}`: {error}", program.unwrap_or_default());
+    let program = program.unwrap_or_default();
+    let why = start_failure::describe(&program, &error);
+    anstream::eprintln!("cannot execute `{program}`: {why}");
     ExitCode::from(u8::try_from(code).unwrap_or(exit::BROKEN))
 }

@@ -182,6 +182,7 @@ impl HookSupervisor {
             ProcessStream::Stderr => Stream::Stderr,
             ProcessStream::Channel => return self.received_from_channel(bytes),
         };
+        self.judgement.printed(stream, bytes);
         let output = &mut self.outputs[stream as usize];
         let room = OUTPUT_LIMIT.saturating_sub(output.bytes.len()).min(bytes.len());
         output.bytes.extend_from_slice(&bytes[..room]);

@@ -10,7 +10,7 @@ use rtf_model::protocol::{CHANNEL_VARIABLE, Request, SCOPE_VARIABLE};
 use rtf_model::{EventKind, TestId, Trigger};
 use rtf_process::namespaces::Namespaces;
 use rtf_process::task::ProcessStream;
-use rtf_process::{codec, resources, start_gate, tree};
+use rtf_process::{codec, resources, start_failure, start_gate, tree};
 
 use super::hook_process::{HookProcess, StreamEnds, supervise};
 use super::journal_close::TimedEvent;
@@ -73,7 +73,7 @@ pub fn run(
         StartedHook::NotBegun if let Err(problem) = &context.resolved => Err(problem.clone()),
         StartedHook::NotBegun => spawn(hook, &start, context).map_err(|error| {
             let program = hook.command.first().map_or("", String::as_str);
-            format!("`{program}` cannot be started: {error}")
+            format!("`{program}` cannot be started: {}", start_failure::describe(program, &error))
         }),
     };
     let problem = match process {

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::fixture_stop::FixtureStop;
 use crate::fixture_values::FixtureValues;
 use crate::hook::request;
+use crate::unbuffered;
 use rtf_plan::plan::{HookBody, HookPlan, SuitePlan};
 
 /// A fact that the guard needs if the runner dies.
@@ -164,6 +165,7 @@ impl HookSpec {
     /// Converts a planned hook.
     pub fn new(suite: &SuitePlan, plan: &HookPlan) -> Self {
         let mut env = vec![(ENVIRONMENT_VARIABLE.to_owned(), suite.settings.environment.clone())];
+        env.extend(unbuffered::variable());
         env.extend(suite.env.iter().chain(&plan.env).cloned());
         env.push((OWNER_VARIABLE.to_owned(), format!("hook {}/{}", suite.name, plan.name)));
         let (command, plugin) = match &plan.body {

@@ -87,6 +87,7 @@ pub fn recover(
         let test = only_test(&state.tests, spec.suite);
         let context = HookContext { reason: &hook_reason, test, network, resolved };
         let (problem, more) = hook_run::run(&spec, hook.status, &context, &mut signals);
+        let problem = problem.map(|problem| values.mask_text(problem));
         hooks.push(RecoveredHook { name: spec.name, problem });
         let masked = |event: TimedEvent| TimedEvent { kind: values.mask(event.kind), ..event };
         events.extend(more.into_iter().map(masked));

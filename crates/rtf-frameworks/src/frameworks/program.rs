@@ -8,6 +8,7 @@ use crate::case::{CaseResult, ListedCase};
 use crate::framework::{
     Framework, Launch, ListError, NoReport, ReportChannel, ReportReader, TestProgram,
 };
+use crate::last_output::LastOutput;
 
 /// The exit code of a test that skips itself, as in Automake and Meson.
 const SKIPPED: i32 = 77;
@@ -43,19 +44,16 @@ impl Framework for Program {
         Box::new(NoReport)
     }
 
-    fn program_result(&self, end: ExitStatus, last_error_line: &str) -> Option<CaseResult> {
-        let with_line = |reason: String| match last_error_line {
-            "" => reason,
-            line => format!("{reason}: {line}"),
+    fn program_result(&self, end: ExitStatus, output: &LastOutput) -> Option<CaseResult> {
+        let with_line = |reason: String| match output.failure_line() {
+            None => reason,
+            Some(line) => format!("{reason}: {line}"),
         };
         Some(match end {
             ExitStatus::Code(0) => CaseResult::default(),
             ExitStatus::Code(SKIPPED) => {
-                let reason = match last_error_line {
-                    "" => "exit code 77",
-                    line => line,
-                };
-                CaseResult::new(Outcome::Skipped, reason)
+                let reason = output.last_error_line();
+                CaseResult::new(Outcome::Skipped, reason.as_deref().unwrap_or("exit code 77"))
             }
             ExitStatus::Code(code @ (NOT_EXECUTABLE | NOT_FOUND)) => {
                 let what = if code == NOT_FOUND { "was not found" } else { "cannot be executed" };
@@ -74,9 +72,12 @@ impl Framework for Program {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::framework::OutputStream;
 
     fn result(end: ExitStatus, line: &str) -> (Option<Outcome>, Option<String>) {
-        let result = Program.program_result(end, line).unwrap();
+        let mut output = LastOutput::default();
+        output.add(OutputStream::Stderr, line.as_bytes());
+        let result = Program.program_result(end, &output).unwrap();
         (result.outcome, result.reason)
     }
 

@@ -266,7 +266,7 @@ impl TestRun<'_> {
             }
             Termination::Exited => {}
         }
-        if let Some(result) = self.framework.program_result(status, &end.last_error_line) {
+        if let Some(result) = self.framework.program_result(status, &end.last_output) {
             let reason = result.reason.unwrap_or_default();
             self.session.record_result(result.outcome.unwrap_or(Outcome::Passed), &reason);
             return false;

@@ -21,6 +21,7 @@ use super::{TestRun, stack};
 use crate::case::Selection;
 use crate::case_reporter::CaseReporter;
 use crate::framework::{Garbage, Launch, OutputStream, ReportChannel, ReportReader};
+use crate::last_output::LastOutput;
 use crate::listing;
 
 /// How much is read at once.
@@ -31,9 +32,6 @@ const RELEASE_WAIT: Duration = Duration::from_millis(200);
 
 /// How long packets are collected that the program does not expect answers to.
 const PAUSE: Duration = Duration::from_millis(2);
-
-/// The longest line of standard error that a reason quotes.
-const ERROR_LINE_BYTES: usize = 500;
 
 /// Why a process ended.
 #[derive(Debug)]
@@ -53,8 +51,8 @@ pub(super) enum Termination {
 pub(super) struct ProcessEnd {
     pub status: ExitStatus,
     pub termination: Termination,
-    /// The last line that it wrote to standard error, if its output was watched.
-    pub last_error_line: String,
+    /// What it printed last, if its output was watched.
+    pub last_output: LastOutput,
     /// Why it died, if it or its framework printed that.
     pub crash_reason: Option<String>,
 }
@@ -79,12 +77,9 @@ pub(super) fn run(
     test.running.set(None);
     let status = wait_for(pid).map_err(|error| format!("the program was lost: {error}"))?;
     process.drain(cases);
-    // What the program left in its group must not run next to the next process. After a stop,
-    // there is none, and the runner ends it after the grace.
-    if !test.is_stopping() {
-        let _ = rustix::process::kill_process_group(pid, Signal::KILL);
-    }
-    let RunningProcess { mut reader, mut termination, last_error, .. } = process;
+    // What the program left in its group must not run next to the next process.
+    let _ = rustix::process::kill_process_group(pid, Signal::KILL);
+    let RunningProcess { mut reader, mut termination, last_output, .. } = process;
     if test.is_stopping() {
         termination = Termination::Stopped;
     }
@@ -96,7 +91,7 @@ pub(super) fn run(
         termination = Termination::Garbage(garbage);
     }
     let crash_reason = reader.crash_reason();
-    Ok(ProcessEnd { status, termination, last_error_line: last_error.text(), crash_reason })
+    Ok(ProcessEnd { status, termination, last_output, crash_reason })
 }
 
 /// Starts a process: forks it if there is a fork server, which is given up when it fails.
@@ -150,7 +145,7 @@ fn start<'a>(
         reader: test.framework.reader(&launch),
         limit,
         termination: Termination::Exited,
-        last_error: LastLine::default(),
+        last_output: LastOutput::default(),
         piece: vec![0; PIECE],
     })
 }
@@ -181,34 +176,6 @@ fn wait_for(pid: Pid) -> rustix::io::Result<ExitStatus> {
     })
 }
 
-/// The last line of a stream that is not blank.
-#[derive(Debug, Default)]
-struct LastLine {
-    complete: Vec<u8>,
-    open: Vec<u8>,
-}
-
-impl LastLine {
-    fn add(&mut self, bytes: &[u8]) {
-        for &byte in bytes {
-            if byte != b'\n' {
-                if self.open.len() < ERROR_LINE_BYTES {
-                    self.open.push(byte);
-                }
-            } else if self.open.trim_ascii().is_empty() {
-                self.open.clear();
-            } else {
-                self.complete = std::mem::take(&mut self.open);
-            }
-        }
-    }
-
-    fn text(&self) -> String {
-        let last = if self.open.trim_ascii().is_empty() { &self.complete } else { &self.open };
-        String::from_utf8_lossy(last.trim_ascii()).into_owned()
-    }
-}
-
 /// Why a wait has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Wakeup {
@@ -232,7 +199,7 @@ struct RunningProcess<'a> {
     reader: Box<dyn ReportReader>,
     limit: Option<Duration>,
     termination: Termination,
-    last_error: LastLine,
+    last_output: LastOutput,
     piece: Vec<u8>,
 }
 
@@ -358,9 +325,9 @@ impl RunningProcess<'_> {
                         OutputStream::Stdout => cases.output(bytes),
                         OutputStream::Stderr => {
                             drop(std::io::stderr().write_all(bytes));
-                            self.last_error.add(bytes);
                         }
                     }
+                    self.last_output.add(stream, bytes);
                     self.reader.output(stream, bytes, cases);
                 }
                 Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}

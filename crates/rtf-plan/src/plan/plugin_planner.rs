@@ -9,10 +9,11 @@ use rtf_model::Diagnostic;
 
 use super::checks::PluginUse;
 use super::context::PlanContext;
+use super::framework_kind::TestSubject;
 use super::host_kind::HostKind;
 use super::input_file::DirectPlugin;
 use super::plugin_search::{self, PluginFinder};
-use super::program::utf8;
+use super::program::{self, utf8};
 use super::search_scope::{Env, SearchScope, search_variables};
 use super::use_site::{PluginRole, UseSite, UseSites};
 use super::{HostPlan, PluginPlan};
@@ -138,6 +139,15 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
         if let Err(problem) = utf8(file) {
             self.context.problems.push(usage.site.label(*problem, ""));
             return None;
+        }
+        let is_program = usage.kind.framework.is_some_and(|it| it.subject == TestSubject::Program);
+        if is_program {
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            let problem = program::interpreter_problem(&name, file, &self.scope.with(usage.env));
+            if let Some(problem) = problem {
+                self.context.problems.push(usage.site.label(*problem, ""));
+                return None;
+            }
         }
         let host = self.host(usage.kind, usage.env, usage.site)?;
         // The checks of other frameworks are added for the selected tests.

@@ -1,8 +1,9 @@
 //! Finds the programs of `<command>` and `command="…"`.
 
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-use rtf_model::Diagnostic;
+use rtf_model::{Diagnostic, INTERPRETER_BYTES, Interpreter};
 
 use super::search_scope::SearchScope;
 use super::unix::is_executable;
@@ -41,7 +42,7 @@ pub(super) fn find(name: &str, scope: &SearchScope<'_>) -> Result<PathBuf, Box<D
         let first = files.next().unwrap_or_default();
         let file = if first.exists() { first } else { files.next().unwrap_or(first) };
         return if is_executable(&file) {
-            Ok(file)
+            interpreter_problem(name, &file, scope).map_or(Ok(file), Err)
         } else if file.is_file() {
             let message = format!("the program `{name}` is not executable");
             let hint = format!("make it executable with `chmod +x {name}`");
@@ -51,14 +52,42 @@ pub(super) fn find(name: &str, scope: &SearchScope<'_>) -> Result<PathBuf, Box<D
             Err(no_such_program(name).note(note).into())
         };
     }
-    in_path(name, scope).ok_or_else(|| {
+    let found = in_path(name, scope).ok_or_else(|| {
         let problem = no_such_program(name).note(searched_path(scope));
         if scope.dir.join(name).is_file() {
             problem.hint(format!("use `./{name}` for the one in the suite's directory")).into()
         } else {
-            problem.into()
+            Box::new(problem)
         }
-    })
+    })?;
+    interpreter_problem(name, &found, scope).map_or(Ok(found), Err)
+}
+
+/// Reports a program whose interpreter is missing, or that has line ends of Windows: the system
+/// would say that the program does not exist.
+pub(super) fn interpreter_problem(
+    name: &str,
+    file: &Path,
+    scope: &SearchScope<'_>,
+) -> Option<Box<Diagnostic>> {
+    let interpreter = Interpreter::of(&head(file)?)?;
+    let problem = |why: String| {
+        let message = format!("the program `{name}` cannot be started: {why}");
+        Diagnostic::error("no-interpreter", message).note(format!("the file is {}", file.display()))
+    };
+    if let Some(found) = interpreter.problem(|path| Path::new(path).exists()) {
+        return Some(Box::new(problem(found.message).hint(found.hint)));
+    }
+    let searched = interpreter.searched.filter(|searched| in_path(searched, scope).is_none())?;
+    let problem = problem(format!("there is no program `{searched}`, its interpreter"));
+    Some(Box::new(problem.note(searched_path(scope))))
+}
+
+fn head(file: &Path) -> Option<Vec<u8>> {
+    let mut head = Vec::new();
+    let file = std::fs::File::open(file).ok()?;
+    file.take(INTERPRETER_BYTES as u64).read_to_end(&mut head).ok()?;
+    Some(head)
 }
 
 fn no_such_program(name: &str) -> Diagnostic {

@@ -43,8 +43,8 @@ use crate::codec::{self, HostMessage};
 use crate::probe::{self, FileVersions, ProbeSelection};
 use crate::process::StartedProcess;
 use crate::spawn_request::ProcessRole;
-use crate::tree::{Effort, SignalReach, Tree};
-use crate::{ssh, stack_dump, start_gate, tree};
+use crate::tree::Effort;
+use crate::{ssh, stack_dump, start_failure, start_gate, tree, unix};
 use debugger::DebuggerWait;
 use file_copy::FileCopy;
 use line_assembly::LineAssembly;
@@ -89,7 +89,8 @@ pub async fn run_process(
         }
         Err(error) => {
             let program = job.launch.request.command.first().map_or("", String::as_str);
-            let reason = format!("`{program}` cannot be started: {error}");
+            let why = start_failure::describe(program, &error);
+            let reason = format!("`{program}` cannot be started: {why}");
             drop(events.send((job.host, ProcessEvent::SpawnFailed(reason))).await);
         }
     }

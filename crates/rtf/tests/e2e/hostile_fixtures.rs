@@ -128,7 +128,7 @@ fn one_that_collapses_while_another_is_set_up_takes_that_along() {
     assert_eq!(code, Some(1));
     let journal = folder.journal();
     let record = &journal.record;
-    assert_eq!(collapse(record), "its process ended with exit code 4");
+    assert_eq!(collapse(record), "its process ended with exit code 4; its last line was: up");
     assert!(record.fixtures[1].collapses.is_empty(), "{:?}", record.fixtures[1].collapses);
     let starts: Vec<u32> = record.fixtures.iter().map(|fixture| fixture.starts).collect();
     assert_eq!(starts, [2, 2]);

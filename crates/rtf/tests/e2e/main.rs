@@ -72,6 +72,7 @@ mod process_fixture;
 mod profile_mistakes;
 mod profiles;
 mod python_exit;
+mod readiness;
 mod remote;
 mod repetition;
 mod replay;

@@ -57,7 +57,9 @@ fn a_death_before_ready_fails_at_once_with_its_last_lines() {
     assert_eq!(record.verdict(TestId(0)), Some(Verdict::Skipped));
     assert_eq!(
         record.fixtures[0].broken.as_deref(),
-        Some("set-up failed: it ended with exit code 3 before it was ready")
+        Some(
+            "set-up failed: it ended with exit code 3 before it was ready; its last line was: the arm is not connected"
+        )
     );
     assert_eq!(record.fixtures[0].log_tail, ["the arm is not connected"]);
     assert!(finished.stdout.contains("the arm is not connected"), "{}", finished.stdout);

@@ -205,7 +205,9 @@ fn its_death_is_a_collapse_with_its_own_signal_and_it_is_started_again() {
     let record = bench.folder.journal().record;
     assert_eq!(record.verdict(TestId(0)), Some(Verdict::Collapsed));
     assert_eq!(record.verdict(TestId(1)), Some(Verdict::Passed));
-    assert_eq!(record.fixtures[0].collapses[0].1, "its process ended with signal 9 (SIGKILL)");
+    let reason = &record.fixtures[0].collapses[0].1;
+    let end = "its process ended with signal 9 (SIGKILL); its last line was: up ";
+    assert!(reason.starts_with(end), "{reason}");
     assert_eq!(record.fixtures[0].starts, 2);
     bench.wait_until_gone();
 }
@@ -281,7 +283,8 @@ fn a_death_before_ready_and_a_refused_connection_are_told_apart() {
     assert_eq!(bench.start().finish().code, Some(1));
     let fixture = &bench.folder.journal().record.fixtures[0];
     let broken = fixture.broken.as_deref().expect("broken");
-    assert_eq!(broken, "set-up failed: it ended with exit code 3 before it was ready");
+    let reason = "it ended with exit code 3 before it was ready; its last line was: no motors";
+    assert_eq!(broken, format!("set-up failed: {reason}"));
     assert_eq!(fixture.log_tail, ["no motors"]);
     std::fs::write(bench.sshd.folder.path().join("authorized"), "").expect("the list of keys");
     assert_eq!(bench.start().finish().code, Some(1));

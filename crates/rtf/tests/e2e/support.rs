@@ -76,6 +76,7 @@ impl Folder {
             "RTF_FORK",
             "RTF_PROFILE",
             "RTF_SSH",
+            "PYTHONUNBUFFERED",
             "LD_LIBRARY_PATH",
             "GITHUB_ACTIONS",
             "GITHUB_WORKSPACE",

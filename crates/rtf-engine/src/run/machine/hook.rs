@@ -91,7 +91,10 @@ impl<'p> RunningHook<'p> {
             }
             ProcessEvent::Replied(RUN_REQUEST, reply) => self.judgement.replied(reply),
             ProcessEvent::ProtocolViolated(what) => self.judgement.protocol_violated(&what),
-            ProcessEvent::Printed(stream, bytes) => self.output.push(stream, &bytes, cx),
+            ProcessEvent::Printed(stream, bytes) => {
+                self.judgement.printed(stream, &bytes);
+                self.output.push(stream, &bytes, cx);
+            }
             ProcessEvent::Attached(Err(why)) => self.judgement.fail(why),
             _ => {}
         }

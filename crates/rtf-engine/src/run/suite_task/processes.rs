@@ -9,6 +9,7 @@ use crate::guard::{FixtureStop, HookStart};
 use crate::run::context::{DebugMode, attachments_dir};
 use crate::run::machine::{HostId, Program, StartRequest};
 use crate::run::probes;
+use crate::unbuffered;
 use rtf_plan::plan::{Leaks, ProcessPlan, TestPlan};
 use rtf_process::launch::Launch;
 use rtf_process::spawn_request::{ProcessRole, SpawnRequest, Streams};
@@ -135,6 +136,7 @@ impl SuiteTask<'_> {
             (ENVIRONMENT_VARIABLE.to_owned(), self.plan.settings.environment.clone()),
             (RUN_DIR_VARIABLE.to_owned(), run_dir),
         ];
+        env.extend(unbuffered::variable());
         env.extend(start.env);
         if !matches!(&start.what, Program::Process(plan) if plan.remote.is_some()) {
             env.extend(self.clock.variables(role));

@@ -24,6 +24,7 @@ mod soak;
 mod stop_and_skip;
 mod stopped_trees;
 mod subscriptions;
+mod unfinished_lines;
 mod unkillable;
 mod unresponsive;
 pub(crate) mod world;
