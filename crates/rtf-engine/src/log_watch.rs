@@ -137,7 +137,9 @@ impl LogWatch {
             self.found.extend(value.map(|value| (name.clone(), value.to_owned())));
             value.is_none()
         });
-        if self.forbidden_line.is_none() && self.forbidden.iter().any(matches) {
+        // The line is reported: a value in it may be a secret, which must be known before.
+        let may_report = end == LineEnd::Complete || self.values.is_empty();
+        if may_report && self.forbidden_line.is_none() && self.forbidden.iter().any(matches) {
             self.forbidden_line = Some(plain.clone().into_owned());
         }
         plain.into_owned()
@@ -384,6 +386,18 @@ mod tests {
         assert_eq!(port(&mut watch), None);
         watch.push(Stdout, b"123\n");
         assert_eq!(port(&mut watch).as_deref(), Some("40123"));
+    }
+
+    #[test]
+    fn a_line_with_a_value_that_is_not_known_yet_is_not_reported() {
+        let value = ("token".to_owned(), Regex::new("token (\\w+)").unwrap());
+        let mut watch = LogWatch::new(Vec::new(), patterns(&["FATAL"]), vec![value]);
+        watch.push(Stdout, b"FATAL: token s3c");
+        watch.try_unfinished();
+        assert_eq!(watch.take_forbidden(), None);
+        watch.push(Stdout, b"ret\n");
+        assert_eq!(watch.take_values().len(), 1);
+        assert!(watch.take_forbidden().is_some());
     }
 
     #[test]
