@@ -69,12 +69,14 @@ pub struct CaseResult {
     /// How long the case took, if the framework measured it. Otherwise it is the time between
     /// the arrivals of its start and its end.
     pub duration: Option<Duration>,
+    /// The framework runs this top-level case again, and the next attempt decides.
+    pub rerun: bool,
 }
 
 impl CaseResult {
     /// A result with a reason.
     pub fn new(outcome: Outcome, reason: impl Into<String>) -> Self {
-        Self { outcome: Some(outcome), reason: Some(reason.into()), duration: None }
+        Self { outcome: Some(outcome), reason: Some(reason.into()), ..Self::default() }
     }
 }
 

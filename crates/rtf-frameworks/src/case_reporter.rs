@@ -3,12 +3,13 @@
 
 mod reports;
 
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 use std::time::Instant;
 
 use rtf_host::Session;
 use rtf_model::protocol::{CaseSelector, Notification};
-use rtf_model::{CaseId, CaseStart, Outcome};
+use rtf_model::{CaseId, CaseStart, MessageKind, Outcome};
 
 use crate::case::{CaseResult, Selection, StartedCase};
 use crate::wanted::WantedCases;
@@ -38,6 +39,8 @@ pub struct CaseReporter<'a> {
     open: Vec<OpenCase>,
     /// Top-level cases that have finished: whether without a problem.
     results: HashMap<String, bool>,
+    /// Those that finished in the present process, which may repeat them.
+    finished_here: HashSet<String>,
     skipped: usize,
     /// The top-level cases that are expected; `None` if any is.
     expected: Option<HashSet<String>>,
@@ -69,6 +72,7 @@ impl<'a> CaseReporter<'a> {
             started: 0,
             open: Vec::new(),
             results: HashMap::new(),
+            finished_here: HashSet::new(),
             skipped: 0,
             expected: None,
             wanted: None,
@@ -109,11 +113,11 @@ impl<'a> CaseReporter<'a> {
     }
 
     /// Whether a top-level case runs in the present process: it is selected and has not
-    /// finished.
+    /// finished in an earlier one.
     #[must_use]
     pub fn runs(&self, name: &str) -> bool {
         self.is_wanted(name)
-            && !self.results.contains_key(name)
+            && (!self.results.contains_key(name) || self.finished_here.contains(name))
             && self.selection.as_ref().is_none_or(|selection| selection.contains(name))
     }
 
@@ -162,7 +166,7 @@ impl<'a> CaseReporter<'a> {
         };
         let id = CaseId(self.started + 1);
         let StartedCase { name, parameters, tags, location } = case;
-        let start = CaseStart { case: id, name, parent, parameters, tags, location };
+        let start = CaseStart { parent, parameters, tags, location, ..CaseStart::new(id, name) };
         if !self.session.forward(&Notification::CaseStarted(start)) {
             return self.test_error("a case has a name that is longer than 16 MiB".to_owned());
         }
@@ -180,7 +184,7 @@ impl<'a> CaseReporter<'a> {
     /// Finishes the open case with this path. The cases in it must have finished.
     pub fn finish(&mut self, path: &str, result: CaseResult) {
         let Some(index) = self.open.iter().rposition(|open| open.path == path) else {
-            return self.test_error(format!("the program finished `{path}`, which is not running"));
+            return self.report_unmatched(path, result);
         };
         let case = self.open[index].case;
         // Cases that the framework left open have the result that their messages report.
@@ -191,27 +195,57 @@ impl<'a> CaseReporter<'a> {
         let Some(index) = self.open.iter().rposition(|open| open.case == case) else { return };
         let open = self.open.remove(index);
         self.current = None;
-        let CaseResult { outcome, reason, duration } = result;
+        let CaseResult { outcome, reason, duration, rerun } = result;
+        let rerun = rerun && open.parent.is_none();
         let duration_us = duration.map(|it| u64::try_from(it.as_micros()).unwrap_or(u64::MAX));
         let is_bad = outcome.is_some_and(|it| !matches!(it, Outcome::Passed | Outcome::Skipped));
         let has_problem = open.has_problem || is_bad;
-        self.has_problem |= has_problem;
+        // The next attempt decides.
+        self.has_problem |= has_problem && !rerun;
         if let Some(parent) = open.parent {
             let mut others = self.open.iter_mut();
             if let Some(parent) = others.find(|other| other.case == parent) {
                 parent.has_problem |= has_problem;
             }
         } else {
-            self.skipped += usize::from(outcome == Some(Outcome::Skipped) && !has_problem);
             self.finished += 1;
             self.last_finished = Some(open.path.clone());
-            self.results.insert(open.path, !has_problem);
+            if !rerun {
+                let is_skipped = outcome == Some(Outcome::Skipped) && !has_problem;
+                self.record_result(open.path, !has_problem, is_skipped);
+            }
         }
-        let finished = Notification::CaseFinished { case, outcome, reason, duration_us };
+        let finished = Notification::CaseFinished { case, outcome, reason, duration_us, rerun };
         if !self.session.interrupted() && !self.session.forward(&finished) {
             let reason = Some("the reason is longer than 16 MiB".to_owned());
-            let end = Notification::CaseFinished { case, outcome, reason, duration_us };
+            let end = Notification::CaseFinished { case, outcome, reason, duration_us, rerun };
             self.session.forward(&end);
+        }
+    }
+
+    /// A top-level case has finished, perhaps for a second time.
+    fn record_result(&mut self, name: String, has_passed: bool, is_skipped: bool) {
+        self.finished_here.insert(name.clone());
+        match self.results.entry(name) {
+            Entry::Occupied(mut before) => *before.get_mut() &= has_passed,
+            Entry::Vacant(place) => {
+                place.insert(has_passed);
+                self.skipped += usize::from(is_skipped);
+            }
+        }
+    }
+
+    /// Reports the end of a case that is not open: a problem, if it did not pass.
+    fn report_unmatched(&mut self, path: &str, result: CaseResult) {
+        let text = format!("the program finished `{path}`, which is not running");
+        match result.outcome {
+            None | Some(Outcome::Passed | Outcome::Skipped) => {
+                self.message(None, MessageKind::Report, format!("warning: {text}"), None);
+            }
+            Some(_) => {
+                let reason = result.reason.map(|reason| format!(": {reason}")).unwrap_or_default();
+                self.test_error(format!("{text}{reason}"));
+            }
         }
     }
 
@@ -313,6 +347,7 @@ impl<'a> CaseReporter<'a> {
     /// A new process begins, which runs these cases.
     pub fn begin_process(&mut self, selection: &Selection<'_>) {
         (self.has_problem, self.finished, self.last_finished) = (false, 0, None);
+        self.finished_here.clear();
         self.is_complete = false;
         self.is_first_process = self.expected.is_none();
         let names = || selection.cases.iter().map(|case| case.name.clone()).collect();

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use rtf_model::ExitStatus;
+use rtf_model::protocol::CaseSelector;
 
 use crate::case::{CaseResult, ListedCase, Selection};
 use crate::case_reporter::CaseReporter;
@@ -56,6 +57,10 @@ pub struct Launch<'a> {
     pub cases: Selection<'a>,
     /// Where it reports.
     pub channel: OpenChannel,
+    /// The selectors of the runner; all cases if there is none.
+    pub wanted: &'a [CaseSelector],
+    /// The cases that finished in earlier processes.
+    pub finished: &'a HashMap<String, bool>,
     /// A directory for temporary files, which exists.
     pub scratch: &'a Path,
 }

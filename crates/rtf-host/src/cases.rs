@@ -197,9 +197,20 @@ impl Cases {
                 }
                 _ => (None, None),
             };
-            let outcome_only =
-                Notification::CaseFinished { case, outcome, reason: None, duration_us: None };
-            if !send(&Notification::CaseFinished { case, outcome, reason, duration_us: None }) {
+            let outcome_only = Notification::CaseFinished {
+                case,
+                outcome,
+                reason: None,
+                duration_us: None,
+                rerun: false,
+            };
+            if !send(&Notification::CaseFinished {
+                case,
+                outcome,
+                reason,
+                duration_us: None,
+                rerun: false,
+            }) {
                 send(&outcome_only);
             }
         }

@@ -126,8 +126,7 @@ mod tests {
     fn cases_wait_like_messages() {
         let (test, backlog) = (TestId(3), Backlog::default());
         let (case, name) = (CaseId(1), "x".repeat(50));
-        let (parameters, tags) = (Vec::new(), Vec::new());
-        let start = CaseStart { case, name, parent: None, parameters, tags, location: None };
+        let start = CaseStart::new(case, name);
         let names = vec!["x".repeat(76)];
         let kinds = [
             EventKind::CasesPlanned { test, names },
@@ -140,6 +139,7 @@ mod tests {
                 decided_by: None,
                 duration_us: None,
                 carried: false,
+                rerun: false,
             }),
         ];
         for (kind, bytes) in kinds.into_iter().zip([300, 550, 800]) {

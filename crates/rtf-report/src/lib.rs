@@ -43,6 +43,7 @@ mod progress_bar;
 pub mod repetition_summary;
 mod report_file;
 mod reporter;
+mod retried;
 pub mod run_dir;
 mod stdout_stream;
 pub mod tap;

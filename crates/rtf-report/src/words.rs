@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::time::Duration;
 
-use rtf_model::{Attachment, AttemptRecord, Record, TestRecord};
+use rtf_model::{Attachment, AttemptRecord, CaseRecord, Record, TestRecord};
 
 use crate::escape;
 
@@ -58,6 +58,16 @@ pub(crate) fn significant(number: f64) -> String {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
         false => text,
     }
+}
+
+/// `, attempt 2, will be retried` of a case that its framework runs again.
+pub(crate) fn case_attempt(case: &CaseRecord) -> String {
+    let attempt = match case.start.earlier_attempts {
+        0 => String::new(),
+        earlier => format!(", attempt {}", earlier + 1),
+    };
+    let is_rerun = case.finished.as_ref().is_some_and(|(_, finished)| finished.rerun);
+    if is_rerun { attempt + ", will be retried" } else { attempt }
 }
 
 /// `repetition 2 of 3`; without the total while it is unknown.

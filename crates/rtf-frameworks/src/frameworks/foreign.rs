@@ -1,6 +1,7 @@
 //! The parsers of what programs of other frameworks write, without the programs: for tests that
 //! give them arbitrary bytes.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use rtf_host::Session;
@@ -67,7 +68,8 @@ pub fn read_report(
     let first = listed.first()?;
     let test = TestProgram { file: PathBuf::from("/tests/program"), args: Vec::new() };
     let cases = Selection { cases: &listed, is_all: false };
-    let launch = Launch { test: &test, cases, channel: OpenChannel::None, scratch };
+    let (channel, wanted, finished) = (OpenChannel::None, &[], &HashMap::new());
+    let launch = Launch { test: &test, cases, channel, wanted, finished, scratch };
     let mut reader = match framework {
         "ctest" => ctest::reader_of_first(written.document, &first.name),
         _ => {

@@ -3,6 +3,9 @@
 
 use std::process::Command;
 
+use rtf_model::protocol::CaseSelector;
+use serde::Serialize;
+
 use crate::case::ListedCase;
 use crate::framework::{
     Framework, Launch, ListError, NoReport, ReportChannel, ReportReader, StackDump, TestProgram,
@@ -26,8 +29,33 @@ const RESERVED: [&str; 9] = [
     "--version",
 ];
 
-/// Names the file with the selected items, for the workers of pytest-xdist.
+/// Names the file with the selection, for the workers of pytest-xdist.
 const SELECTION_VARIABLE: &str = "RTF_SELECTED_CASES";
+
+/// The items that workers of pytest-xdist run. They have no session.
+#[derive(Debug, Serialize)]
+struct Selection<'a> {
+    wanted: Vec<CaseSelector>,
+    finished: Vec<&'a str>,
+}
+
+impl<'a> Selection<'a> {
+    fn of(launch: &Launch<'a>) -> Self {
+        let cases = launch.cases;
+        if cases.cases.is_empty() {
+            // The plug-in announces them.
+            let finished = launch.finished.keys().map(String::as_str).collect();
+            return Self { wanted: launch.wanted.to_vec(), finished };
+        }
+        let equals = |case: &ListedCase| CaseSelector::Equals(case.name.clone());
+        let selected = cases.cases.iter().filter(|_| !cases.is_all).map(equals);
+        Self { wanted: selected.collect(), finished: Vec::new() }
+    }
+
+    fn is_all(&self) -> bool {
+        self.wanted.is_empty() && self.finished.is_empty()
+    }
+}
 
 /// The exit code without any item. That no case was reported is an error in any case.
 const NO_TESTS: i32 = 5;
@@ -46,9 +74,9 @@ impl Framework for Pytest {
         python::list(test, command, explain).map(Some)
     }
 
-    fn list_for_run(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
-        // The plug-in announces the items, but only the list can select those of workers.
-        if has_workers(&test.args) { self.list(test) } else { Ok(None) }
+    fn list_for_run(&self, _test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
+        // The plug-in announces the items.
+        Ok(None)
     }
 
     fn channel(&self) -> ReportChannel {
@@ -58,10 +86,10 @@ impl Framework for Pytest {
     fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
         let mut command = command(launch.test);
         command.env_remove(SELECTION_VARIABLE);
-        if !launch.cases.is_all && has_workers(&launch.test.args) {
-            let names: Vec<&str> = launch.cases.cases.iter().map(|it| it.name.as_str()).collect();
+        let selection = Selection::of(launch);
+        if !selection.is_all() {
             let file = launch.scratch.join("selection.json");
-            let text = serde_json::to_vec(&names).map_err(|error| error.to_string())?;
+            let text = serde_json::to_vec(&selection).map_err(|error| error.to_string())?;
             std::fs::write(&file, text).map_err(|error| error.to_string())?;
             command.env(SELECTION_VARIABLE, file);
         }
@@ -92,13 +120,6 @@ fn command(test: &TestProgram) -> Command {
     command
 }
 
-/// Whether the arguments start workers of pytest-xdist.
-fn has_workers(args: &[String]) -> bool {
-    args.iter().any(|arg| {
-        arg.starts_with("-n") || arg.starts_with("--numprocesses") || arg.starts_with("--dist")
-    })
-}
-
 fn explain(listed: &Listed) -> Option<String> {
     let text = String::from_utf8_lossy(&listed.stderr);
     let interpreter = python::interpreter_name();
@@ -108,19 +129,4 @@ fn explain(listed: &Listed) -> Option<String> {
              or on Debian the package python3-pytest"
         )
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::has_workers;
-
-    #[test]
-    fn arguments_that_start_workers_are_recognized() {
-        let has = |words: &[&str]| {
-            has_workers(&words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>())
-        };
-        assert!(has(&["-q", "-n", "4"]) && has(&["-nauto"]) && has(&["--numprocesses=2"]));
-        assert!(has(&["--dist=loadfile"]));
-        assert!(!has(&["-m", "not slow", "--no-header"]));
-    }
 }

@@ -82,6 +82,8 @@ struct TestRun<'a> {
     separate: bool,
     fork_point: ForkPoint,
     fixture_values: &'a [FixtureValue],
+    /// The cases that the runner wants; all, if there is none.
+    wanted: &'a [CaseSelector],
     /// For temporary files.
     scratch: &'a Path,
     /// Where the program writes its stacks on a signal.
@@ -118,6 +120,7 @@ pub fn run(
         separate,
         fork_point: if plugin.fork_at_main { ForkPoint::Main } else { ForkPoint::Start },
         fixture_values: &plugin.fixture_values,
+        wanted: &plugin.cases,
         scratch,
         stack_file: scratch.join("stacks"),
         fork_server: Cell::default(),

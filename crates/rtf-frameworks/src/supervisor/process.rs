@@ -1,6 +1,7 @@
 //! One process of a program: starts it, reads its report, its output and its session, and
 //! kills it at the limit of a case.
 
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::{Read as _, Write as _};
 use std::os::fd::{AsFd, AsRawFd as _, BorrowedFd, OwnedFd};
@@ -64,7 +65,7 @@ pub(super) fn run(
     limit: Option<Duration>,
     cases: &mut CaseReporter<'_>,
 ) -> Result<ProcessEnd, String> {
-    let mut process = start(test, selection, limit)?;
+    let mut process = start(test, selection, limit, cases.results())?;
     let pid = process.pid;
     test.running.set(Some(pid));
     // A stop request may have arrived before there was a process to stop.
@@ -99,6 +100,7 @@ fn start<'a>(
     test: &'a TestRun<'a>,
     selection: Selection<'_>,
     limit: Option<Duration>,
+    finished: &HashMap<String, bool>,
 ) -> Result<RunningProcess<'a>, String> {
     let server = test.fork_server.take();
     let report_number = server.as_ref().map(super::fork_server::ForkServer::report_number);
@@ -108,6 +110,8 @@ fn start<'a>(
         test: &test.program,
         cases: selection,
         channel: channel.address,
+        wanted: test.wanted,
+        finished,
         scratch: test.scratch,
     };
     let mut command = test.framework.command(&launch)?;
@@ -128,7 +132,7 @@ fn start<'a>(
             command.env(SESSION_VARIABLE, format!("fd:{}", server.session_number()));
             let Ok(pid) = server.fork(&command, &ends) else {
                 drop(server);
-                return start(test, selection, limit);
+                return start(test, selection, limit, finished);
             };
             test.fork_server.set(Some(server));
             pid

@@ -127,6 +127,8 @@ struct Finish {
     outcome: Option<Outcome>,
     reason: Option<String>,
     duration_us: Option<u64>,
+    #[serde(default)]
+    rerun: bool,
 }
 
 impl SessionSocket {
@@ -198,9 +200,9 @@ fn carry_out(packet: Packet, values: &[FixtureValue], cases: &mut CaseReporter<'
             }
             cases.start_case(parent.as_deref(), StartedCase { name, parameters, tags, location });
         }
-        Packet::CaseFinished(Finish { name, outcome, reason, duration_us }) => {
+        Packet::CaseFinished(Finish { name, outcome, reason, duration_us, rerun }) => {
             let duration = duration_us.map(Duration::from_micros);
-            cases.finish(&name, CaseResult { outcome, reason, duration });
+            cases.finish(&name, CaseResult { outcome, reason, duration, rerun });
         }
         Packet::Finished {} => cases.complete_report(),
     }

@@ -124,7 +124,7 @@ fn add_test(test: &TestRecord, identity: TestIdentity, robot: &str, to: &mut Vec
             identity,
             was: None,
             verdict: case.verdict,
-            is_flaky: case.outcomes.is_mixed(),
+            is_flaky: case.is_flaky || case.outcomes.is_mixed(),
             attempts: count(case.durations.len()),
             problems: case.problems,
             duration_us: median_us(case.durations.into_iter()),
@@ -139,6 +139,7 @@ fn add_test(test: &TestRecord, identity: TestIdentity, robot: &str, to: &mut Vec
 struct CaseSummary {
     verdict: Verdict,
     reason: Option<String>,
+    is_flaky: bool,
     problems: u32,
     outcomes: Mixture,
     durations: Vec<Duration>,
@@ -172,12 +173,13 @@ impl Mixture {
 /// The finished cases by path.
 fn cases(test: &TestRecord) -> BTreeMap<String, CaseSummary> {
     let mut cases = BTreeMap::<String, CaseSummary>::new();
-    for case in test.deciding_attempts().flat_map(|attempt| attempt.cases.kept()) {
+    for case in test.deciding_attempts().flat_map(|attempt| attempt.cases.decisive()) {
         let Some(verdict) = case.verdict() else { continue };
         let reason = || case.reason().map(str::to_owned);
         let known = cases.entry(case.path.clone()).or_insert_with(|| CaseSummary {
             verdict,
             reason: reason(),
+            is_flaky: false,
             problems: 0,
             outcomes: Mixture::default(),
             durations: Vec::new(),
@@ -185,6 +187,7 @@ fn cases(test: &TestRecord) -> BTreeMap<String, CaseSummary> {
         if verdict.is_problem() && !known.verdict.is_problem() {
             (known.verdict, known.reason) = (verdict, reason());
         }
+        known.is_flaky |= case.is_flaky();
         known.problems += u32::from(verdict.is_problem());
         known.outcomes.add(verdict);
         known.durations.extend(case.duration());

@@ -16,8 +16,7 @@ impl Session {
         parameters: Vec<Parameter>,
         location: Option<Location>,
     ) -> bool {
-        let (case, parent, tags) = (CaseId(0), None, Vec::new());
-        let start = CaseStart { case, name, parent, parameters, tags, location };
+        let start = CaseStart { parameters, location, ..CaseStart::new(CaseId(0), name) };
         let send = |started: &Notification| self.notify_case(started);
         self.allowed(self.0.cases.begin(start, self.interrupted(), send)).unwrap_or(false)
     }

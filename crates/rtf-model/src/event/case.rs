@@ -34,6 +34,24 @@ pub struct CaseStart {
     /// Where in the plug-in it starts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub location: Option<Location>,
+    /// Number of its attempts before this one. The runner counts them.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub earlier_attempts: u32,
+}
+
+impl CaseStart {
+    /// A top-level case of which only the name is known.
+    #[must_use]
+    pub fn new(case: CaseId, name: String) -> Self {
+        let (parent, location, earlier_attempts) = (None, None, 0);
+        let (parameters, tags) = (Vec::new(), Vec::new());
+        Self { case, name, parent, parameters, tags, location, earlier_attempts }
+    }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde requires a reference")]
+fn is_zero(number: &u32) -> bool {
+    *number == 0
 }
 
 /// A case of a running test starts. [`CaseFinished`] is the matching end.
@@ -71,4 +89,7 @@ pub struct CaseFinished {
     /// It finished in an earlier attempt, which a collapse interrupted.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub carried: bool,
+    /// Another attempt of this top-level case follows, which decides.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub rerun: bool,
 }

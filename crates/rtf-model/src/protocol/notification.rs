@@ -78,6 +78,9 @@ pub enum Notification {
         /// the two notifications.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         duration_us: Option<u64>,
+        /// Its framework runs this top-level case again, and the next attempt decides.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        rerun: bool,
     },
     /// A test asks an operator a question. Ends with [`Request::QuestionClosed`] or
     /// [`Request::Interrupt`].

@@ -16,6 +16,8 @@ pub struct CaseRecord {
     pub started: Micros,
     /// When and how it finished.
     pub finished: Option<(Micros, CaseFinished)>,
+    /// Whether a later attempt of it, or of a case that contains it, decides.
+    pub is_superseded: bool,
 }
 
 impl CaseRecord {
@@ -46,7 +48,13 @@ impl CaseRecord {
         Some(finished.duration_us.map_or_else(|| at.since(self.started), Duration::from_micros))
     }
 
-    /// Whether it finished in an earlier attempt, which has its messages.
+    /// Whether it passed after its framework had run it before.
+    #[must_use]
+    pub fn is_flaky(&self) -> bool {
+        self.start.earlier_attempts > 0 && self.verdict() == Some(Verdict::Passed)
+    }
+
+    /// Whether it finished in an earlier attempt of the test, which has its messages.
     #[must_use]
     pub fn is_carried(&self) -> bool {
         self.finished.as_ref().is_some_and(|(_, finished)| finished.carried)
@@ -95,16 +103,41 @@ pub struct AttemptCases {
     not_run: PlannedCases,
     counts: [u64; Verdict::ALL.len()],
     omitted: u64,
+    superseded: u64,
+    flaky: u64,
 }
 
 impl AttemptCases {
     /// Maximum number of passed cases that a [`super::Record`] keeps.
     pub const PASSED_KEPT: u64 = 100_000;
 
-    /// The cases that are kept, in the order in which they started.
+    /// The cases that are kept, in the order in which they started; of a case that its
+    /// framework ran again, all attempts.
     #[must_use]
     pub fn kept(&self) -> &[CaseRecord] {
         &self.kept
+    }
+
+    /// The cases that are kept, of each one the last attempt.
+    pub fn decisive(&self) -> impl Iterator<Item = &CaseRecord> {
+        self.kept.iter().filter(|case| !case.is_superseded)
+    }
+
+    /// The earlier attempts of a top-level case.
+    pub fn earlier_attempts(&self, case: &CaseRecord) -> impl Iterator<Item = &CaseRecord> {
+        let path = (case.start.earlier_attempts > 0).then(|| case.path.clone());
+        let is_earlier = move |other: &&CaseRecord| {
+            other.is_superseded
+                && other.start.parent.is_none()
+                && Some(&other.path) == path.as_ref()
+        };
+        self.kept.iter().filter(is_earlier)
+    }
+
+    /// Number of cases that passed after their framework had run them before.
+    #[must_use]
+    pub fn flaky(&self) -> u64 {
+        self.flaky
     }
 
     /// The case with this id, if it is kept.
@@ -138,10 +171,10 @@ impl AttemptCases {
         self.omitted
     }
 
-    /// Number of cases: finished, open, and planned.
+    /// Number of cases: finished, open, and planned. Attempts of a case are one case.
     #[must_use]
     pub fn total(&self) -> u64 {
-        self.kept.len() as u64 + self.omitted + self.not_run.len() as u64
+        self.kept.len() as u64 - self.superseded + self.omitted + self.not_run.len() as u64
     }
 
     /// The path by which a host knows a case. The runner numbers repeated names: the host
@@ -174,10 +207,11 @@ impl AttemptCases {
             Some(parent) => format!("{}/{}", parent.path, start.name),
             None => start.name.clone(),
         };
-        if start.parent.is_none() {
+        if start.parent.is_none() && start.earlier_attempts == 0 {
             self.not_run.start(&start.name);
         }
-        self.kept.push(CaseRecord { start: start.clone(), path, started: at, finished: None });
+        let (start, finished, is_superseded) = (start.clone(), None, false);
+        self.kept.push(CaseRecord { start, path, started: at, finished, is_superseded });
     }
 
     /// `passed_kept`: the number of passed cases that the run's record keeps.
@@ -186,6 +220,13 @@ impl AttemptCases {
             return;
         };
         self.counts[end.verdict as usize] += 1;
+        self.flaky += u64::from(
+            self.kept[index].start.earlier_attempts > 0 && end.verdict == Verdict::Passed,
+        );
+        if end.rerun {
+            self.kept[index].finished = Some((at, end.clone()));
+            return self.supersede(index);
+        }
         if end.verdict == Verdict::Passed {
             if *passed_kept >= Self::PASSED_KEPT {
                 self.omitted += 1;
@@ -195,5 +236,22 @@ impl AttemptCases {
             *passed_kept += 1;
         }
         self.kept[index].finished = Some((at, end.clone()));
+    }
+
+    /// Removes a case, and those that it contains, from the counts: another attempt decides.
+    fn supersede(&mut self, index: usize) {
+        let mut ids = Vec::new();
+        for (offset, case) in self.kept[index..].iter_mut().enumerate() {
+            if offset > 0 && !case.start.parent.is_some_and(|parent| ids.contains(&parent)) {
+                continue;
+            }
+            ids.push(case.start.case);
+            case.is_superseded = true;
+            self.superseded += 1;
+            if let Some(verdict) = case.verdict() {
+                self.counts[verdict as usize] -= 1;
+            }
+            self.flaky -= u64::from(case.is_flaky());
+        }
     }
 }

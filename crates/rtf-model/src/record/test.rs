@@ -197,14 +197,15 @@ impl TestRecord {
         self.deciding_attempts().any(|attempt| attempt.cases.of(Verdict::Skipped) > 0)
     }
 
-    /// Whether it passed after an earlier attempt had failed. (An
+    /// Whether it passed after an earlier attempt of it, or of one of its cases, had failed. (An
     /// attempt that ended with a collapse is no evidence against the test.)
     #[must_use]
     pub fn is_flaky(&self) -> bool {
         use Verdict::{Crashed, Error, Failed, TimedOut};
         let fails = |v: Verdict| matches!(v, Failed | Error | Crashed | TimedOut);
-        self.verdict() == Some(Verdict::Passed)
-            && self.attempts.iter().filter_map(AttemptRecord::verdict).any(fails)
+        let any_failed = || self.attempts.iter().filter_map(AttemptRecord::verdict).any(fails);
+        let any_flaky_case = || self.deciding_attempts().any(|it| it.cases.flaky() > 0);
+        self.verdict() == Some(Verdict::Passed) && (any_failed() || any_flaky_case())
     }
 
     /// Why it did not pass.
@@ -358,6 +359,7 @@ impl AttemptRecord {
         let is_open_inside =
             |inner: &CaseRecord| inner.start.parent == id && inner.finished.is_none();
         match &case.finished {
+            _ if case.is_superseded => false,
             None => !self.cases.kept().iter().any(is_open_inside),
             Some((_, finished)) => {
                 finished.verdict.is_problem()

@@ -12,8 +12,7 @@ use rtf_model::{
 fn case(number: u32, name: &str, parent: Option<u32>) -> EventKind {
     let (case, parent) = (CaseId(number), parent.map(CaseId));
     let name = name.to_owned();
-    let start =
-        CaseStart { case, name, parent, parameters: Vec::new(), tags: Vec::new(), location: None };
+    let start = CaseStart { parent, ..CaseStart::new(case, name) };
     EventKind::CaseStarted(Box::new(CaseStarted { test: TEST, start }))
 }
 
@@ -31,6 +30,7 @@ fn case_ends_after(number: u32, verdict: Verdict, carried_after_us: Option<u64>)
         decided_by: None,
         duration_us: carried_after_us,
         carried: carried_after_us.is_some(),
+        rerun: false,
     })
 }
 
@@ -379,4 +379,52 @@ fn a_test_that_the_runner_skips_is_not_green() {
     let record = record(kinds);
     assert_eq!(record.tests[0].significance(), Significance::Counts);
     assert!(!record.is_green());
+}
+
+fn next_attempt(number: u32, name: &str, earlier_attempts: u32) -> EventKind {
+    let start = CaseStart { earlier_attempts, ..CaseStart::new(CaseId(number), name.to_owned()) };
+    EventKind::CaseStarted(Box::new(CaseStarted { test: TEST, start }))
+}
+
+fn is_rerun(number: u32, verdict: Verdict) -> EventKind {
+    let EventKind::CaseFinished(end) = case_ends(number, verdict) else { panic!() };
+    EventKind::CaseFinished(CaseFinished { rerun: true, ..end })
+}
+
+/// A case in a failed attempt, and another one.
+fn retried() -> Vec<EventKind> {
+    vec![
+        case(1, "a", None),
+        case(2, "subtest", Some(1)),
+        case_ends(2, Verdict::Failed),
+        is_rerun(1, Verdict::Failed),
+        next_attempt(3, "a", 1),
+        case_ends(3, Verdict::Passed),
+        case(4, "b", None),
+        case_ends(4, Verdict::Passed),
+    ]
+}
+
+#[test]
+fn the_last_attempt_of_a_case_counts() {
+    check(&stream(body(retried()))).unwrap();
+    let record = record(body(retried()));
+    let test = &record.tests[0];
+    let cases = &test.attempts[0].cases;
+    let counts = [Verdict::Passed, Verdict::Failed].map(|verdict| cases.of(verdict));
+    assert_eq!((counts, cases.problems(), cases.total(), cases.flaky()), ([2, 0], 0, 2, 1));
+    let decisive: Vec<_> = cases.decisive().map(|case| case.start.case.0).collect();
+    assert_eq!(decisive, [3, 4]);
+    let flaky = cases.get(CaseId(3)).unwrap();
+    let earlier: Vec<_> = cases.earlier_attempts(flaky).map(|case| case.start.case.0).collect();
+    assert_eq!((flaky.is_flaky(), earlier), (true, vec![1]));
+    assert!(test.is_flaky(), "although the runner did not retry the test");
+}
+
+#[test]
+fn attempts_of_a_case_follow_one_another() {
+    let twice = [case(1, "a", None), case_ends(1, Verdict::Failed), next_attempt(2, "a", 1)];
+    assert!(check(&stream(body(twice))).unwrap_err().contains("not the next attempt"));
+    let inner = [case(1, "a", None), case(2, "b", Some(1)), is_rerun(2, Verdict::Failed)];
+    assert!(check(&stream(body(inner))).unwrap_err().contains("has another attempt"));
 }

@@ -106,6 +106,15 @@ impl<'r> TestCases<'r> {
         Some(Self { results, omitted, attempts, problems })
     }
 
+    /// The attempts of a case before the one that decides.
+    pub fn earlier_attempts(&self, case: &CaseResult<'r>) -> Vec<CaseResult<'r>> {
+        let Some((record, attempt)) = case.record.zip(self.attempts.get(case.attempt)) else {
+            return Vec::new();
+        };
+        let earlier = attempt.cases.earlier_attempts(record);
+        earlier.map(|case_of| CaseResult::new((case.attempt, attempt), case_of, None)).collect()
+    }
+
     /// The failures and violated limits that were reported in a case.
     pub fn problems(&self, case: &CaseResult<'_>) -> Option<&CaseProblems<'r>> {
         self.problems.get(&case.key()?)
@@ -178,11 +187,11 @@ impl<'r> CaseResult<'r> {
 type Results<'r> = (Vec<CaseResult<'r>>, Vec<&'r str>);
 
 fn one_attempt(attempt: &AttemptRecord) -> Results<'_> {
-    let kept = attempt.cases.kept();
-    let index = |id: CaseId| kept.binary_search_by_key(&id, |case| case.start.case).ok();
+    let decisive: Vec<&CaseRecord> = attempt.cases.decisive().collect();
+    let index = |id: CaseId| decisive.binary_search_by_key(&id, |case| case.start.case).ok();
     let parent = |case: &CaseRecord| case.start.parent.and_then(index);
     let results =
-        kept.iter().map(|case| CaseResult::new((0, attempt), case, parent(case))).collect();
+        decisive.iter().map(|case| CaseResult::new((0, attempt), case, parent(case))).collect();
     (results, attempt.cases.not_run().names().collect())
 }
 
@@ -190,7 +199,7 @@ fn several_attempts<'r>(attempts: &[&'r AttemptRecord]) -> Results<'r> {
     let mut results: Vec<CaseResult<'r>> = Vec::new();
     let mut indices: HashMap<&str, usize> = HashMap::new();
     for (number, attempt) in attempts.iter().enumerate() {
-        for case in attempt.cases.kept() {
+        for case in attempt.cases.decisive() {
             let parent = case.start.parent.and_then(|id| attempt.cases.get(id));
             let parent = parent.and_then(|parent| indices.get(parent.path.as_str()).copied());
             let result = CaseResult::new((number, attempt), case, parent);

@@ -29,7 +29,7 @@ pub(super) fn case_finished(
     let Some(test) = record.tests.get(end.test.index()) else { return };
     let Some(attempt) = test.attempts.last() else { return };
     let Some(case) = attempt.cases.get(end.case) else { return };
-    if attempt.cases.problems() > CASES || !attempt.has_own_problem(case) {
+    if attempt.cases.problems() > CASES || !(end.rerun || attempt.has_own_problem(case)) {
         return;
     }
     let (known, word) = attempt_word(test, end.verdict);
@@ -56,7 +56,8 @@ pub(super) fn case_line(
     test: &TestRecord,
     (case, word): (&CaseRecord, (anstyle::Style, &str)),
 ) {
-    let name = format!("{}/{}", record.full_name(test.plan.test), case.path);
+    let attempt = words::case_attempt(case);
+    let name = format!("{}/{}{attempt}", record.full_name(test.plan.test), case.path);
     let time = words::time(case.duration().unwrap_or_default());
     page.entry(word, &time, &escape::line(&name));
 }

@@ -8,6 +8,7 @@ use super::style::{self, BAD, BOLD, GOOD, LOUD};
 use super::{ConsoleOptions, case_summary, failed_tests, hooks, skips};
 use crate::growth::{self, Growing, Within};
 use crate::repetition_summary::Repeated;
+use crate::retried::Retried;
 use crate::{escape, explain, outcome, words};
 
 /// Minimum number of repetitions for a histogram.
@@ -66,13 +67,13 @@ fn flaky(page: &mut ConsoleLines, record: &Record) {
     page.line("");
     page.line(&style::paint(BOLD, "flaky tests, which passed only after a retry:"));
     for test in tests {
-        let name = style::paint(style, &escape::line(&record.full_name(test.plan.test)));
-        let attempts = words::count(test.attempts.len() as u64, "attempt");
-        page.line(&format!("  {name}  {attempts}"));
-        let before = test.attempts.iter().filter_map(|attempt| attempt.finished.as_ref());
-        for (_, finished) in before.filter(|(_, finished)| !finished.verdict.is_green()) {
-            let reason = words::short_line(finished.reason.as_deref().unwrap_or_default());
-            page.fact("before", &format!("{}: {reason}", finished.verdict));
+        for retried in Retried::of(record, test) {
+            let name = style::paint(style, &escape::line(&retried.name));
+            let attempts = words::count(retried.attempts, "attempt");
+            page.line(&format!("  {name}  {attempts}"));
+            for (verdict, reason) in retried.before {
+                page.fact("before", &format!("{verdict}: {}", words::first_line(reason)));
+            }
         }
     }
 }

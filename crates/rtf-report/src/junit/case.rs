@@ -3,8 +3,10 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus};
-use rtf_model::{Attachment, CaseId, Measurement, Record, Significance, TestRecord, Verdict};
+use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestRerun};
+use rtf_model::{
+    Attachment, CaseId, CaseRecord, Measurement, Record, Significance, TestRecord, Verdict,
+};
 
 use super::{test, text, time};
 use crate::cases::{CaseResult, CaseSource, TestCases, sources};
@@ -29,7 +31,10 @@ pub(super) fn of(record: &Record, test: &TestRecord, folder: Option<&Path>) -> V
     // One test case has the output and the properties of the test.
     let mut bearer = None;
     for case in cases.results.iter().filter(|case| is_listed(case)) {
-        let status = status(record, test, &cases, case);
+        let mut status = status(record, test, &cases, case);
+        for earlier in cases.earlier_attempts(case) {
+            rerun(&mut status, record, &cases, &earlier);
+        }
         if case.is_problem && bearer.is_none() {
             bearer = Some(junit.len());
         }
@@ -62,7 +67,8 @@ fn has_own_test_case(test: &TestRecord, cases: &TestCases<'_>) -> bool {
         Significance::UnexpectedPass | Significance::SkippedItself => false,
         _ => test.final_verdict() != Verdict::Skipped && !cases.has_test_problem(test),
     };
-    !is_explained || test.is_flaky() || cases.results.is_empty()
+    let is_retried = test.attempts.len() > test.deciding_attempts().count();
+    !is_explained || test.is_flaky() && is_retried || cases.results.is_empty()
 }
 
 /// Adds the output and the properties of a test to the test case of one of its cases.
@@ -99,6 +105,12 @@ fn status(
         return not_run(test);
     };
     let (mut status, message) = match verdict {
+        Verdict::Passed
+            if record.flaky_fails() && case.record.is_some_and(CaseRecord::is_flaky) =>
+        {
+            let status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+            return test::flaky(status);
+        }
         Verdict::Passed => return TestCaseStatus::success(),
         Verdict::Skipped if known_failure::has_red_cases(record, test) => {
             let message = format!("it skipped itself, and skips fail: {}", case.reason());
@@ -117,6 +129,27 @@ fn status(
     explain::case(cases, case, Extent::ALL, sink);
     status.set_description(lines.join("\n"));
     status
+}
+
+/// Adds an earlier attempt of a case. One that passed is no rerun in JUnit.
+fn rerun(
+    status: &mut TestCaseStatus,
+    record: &Record,
+    cases: &TestCases<'_>,
+    attempt: &CaseResult<'_>,
+) {
+    let problem = attempt.verdict().filter(|verdict| verdict.is_problem());
+    let Some((verdict, record_of_case)) = problem.zip(attempt.record) else { return };
+    let mut rerun = TestRerun::new(test::kind(verdict));
+    rerun.timestamp = time::at(record, record_of_case.started);
+    rerun.set_time(attempt.duration);
+    rerun.set_type(verdict.as_str());
+    rerun.set_message(text(attempt.reason().lines().next().unwrap_or_default()));
+    let mut lines = Vec::new();
+    let sink = &mut |_, line: &str| lines.push(line.to_owned());
+    explain::case(cases, attempt, Extent::ALL, sink);
+    rerun.set_description(lines.join("\n"));
+    status.add_rerun(rerun);
 }
 
 fn not_run(test: &TestRecord) -> TestCaseStatus {

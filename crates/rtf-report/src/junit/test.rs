@@ -103,12 +103,17 @@ pub(super) fn kind(verdict: Verdict) -> NonSuccessKind {
     }
 }
 
+/// A failure because it is flaky.
+pub(super) fn flaky(mut status: TestCaseStatus) -> TestCaseStatus {
+    status.set_message(FLAKY);
+    status.set_type("flaky");
+    status
+}
+
 /// A pass names the attempts that did not, as flaky runs.
 fn passed(record: &Record, test: &TestRecord) -> TestCaseStatus {
     if test.is_flaky() && record.flaky_fails() {
-        let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-        status.set_message(FLAKY);
-        status.set_type("flaky");
+        let mut status = flaky(TestCaseStatus::non_success(NonSuccessKind::Failure));
         status.set_description(description(record, test, FLAKY));
         return status;
     }

@@ -8,6 +8,7 @@ use rtf_model::{FixtureRecord, HookRunRecord, Record, Verdict};
 use super::inline::{block, code, first_line};
 use super::{MarkdownOptions, heading, list, row};
 use crate::explain::{self, Extent, Tone};
+use crate::retried::Retried;
 use crate::{cause, known_failure, logs, words};
 
 /// Maximum number of items per list, and of rows per table.
@@ -99,18 +100,17 @@ fn fixture_problems(fixture: &FixtureRecord) -> Vec<(String, &str)> {
 
 /// Tests that passed only after a retry.
 pub(super) fn flaky(page: &mut String, record: &Record) {
-    let tests: Vec<_> = record.tests.iter().filter(|test| test.is_flaky()).collect();
+    let flaky = record.tests.iter().filter(|test| test.is_flaky());
+    let tests: Vec<_> = flaky.flat_map(|test| Retried::of(record, test)).collect();
     if tests.is_empty() {
         return;
     }
     let counts = if record.flaky_fails() { ", which make the run red" } else { "" };
     heading(page, &format!("Flaky tests{counts}"));
     list(page, &tests, ITEMS, "test", |test| {
-        let attempts = words::count(test.attempts.len() as u64, "attempt");
-        let finished = test.attempts.iter().filter_map(|attempt| attempt.finished.as_ref());
-        let failed = finished.map(|(_, finished)| finished).find(|f| !f.verdict.is_green());
-        let reason = failed.and_then(|finished| finished.reason.as_deref()).unwrap_or_default();
-        let name = code(&record.full_name(test.plan.test));
+        let attempts = words::count(test.attempts, "attempt");
+        let reason = test.before.first().map_or("", |(_, reason)| *reason);
+        let name = code(&test.name);
         format!("{name} passed after {attempts}; before: {}", first_line(reason))
     });
 }

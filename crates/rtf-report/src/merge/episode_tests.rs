@@ -112,6 +112,7 @@ fn interrupted_case(test: TestId, case: CaseId) -> EventKind {
         decided_by: None,
         duration_us: None,
         carried: false,
+        rerun: false,
     })
 }
 

@@ -138,6 +138,9 @@ fn add_case(trace: &mut Trace, case: &CaseRecord, parent: u64, end: Micros) -> u
         .text("test.case.name", &case.path)
         .text("test.case.result.status", result_status(verdict))
         .text("rtf.verdict", verdict.as_str());
+    if case.is_superseded || case.start.earlier_attempts > 0 {
+        attributes = attributes.whole("rtf.attempt", (case.start.earlier_attempts + 1).into());
+    }
     for parameter in &case.start.parameters {
         attributes =
             attributes.text(&format!("rtf.parameter.{}", parameter.name), &parameter.value);

@@ -39,7 +39,10 @@ fn show_case(lines: &mut TextLines, case: &CaseRecord, details: &[String]) {
     let indent = 6 + INDENT * case.depth().min(DEPTH);
     let result = match (case.verdict(), case.duration()) {
         (Some(verdict), Some(time)) => {
-            let place = if case.is_carried() { " in an earlier attempt" } else { "" };
+            let place = match case.is_carried() {
+                true => " in an earlier attempt".to_owned(),
+                false => words::case_attempt(case),
+            };
             format!("{verdict} after {}{place}", words::time(time))
         }
         _ => "it did not finish".to_owned(),

@@ -41,6 +41,14 @@ pub struct Case {
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     #[schema(required = false)]
     pub carried: bool,
+    /// How often its framework ran it before, in this attempt of the test.
+    #[serde(skip_serializing_if = "is_none")]
+    #[schema(required = false)]
+    pub earlier_attempts: u32,
+    /// Whether a later attempt of it, or of a case around it, decides.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[schema(required = false)]
+    pub superseded: bool,
     /// The verdict.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<model::Verdict>)]
@@ -94,6 +102,11 @@ fn is_zero(number: &u64) -> bool {
     *number == 0
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde requires a reference")]
+fn is_none(number: &u32) -> bool {
+    *number == 0
+}
+
 /// Number of cases of an attempt.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct CaseCounts {
@@ -122,6 +135,8 @@ impl Case {
             started: case.started.0,
             duration_us: case.duration().map(|duration| micros(duration).unwrap_or(u64::MAX)),
             carried: case.is_carried(),
+            earlier_attempts: case.start.earlier_attempts,
+            superseded: case.is_superseded,
             verdict: case.verdict(),
             reason: case.reason().map(str::to_owned),
         }

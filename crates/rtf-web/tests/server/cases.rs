@@ -11,12 +11,10 @@ use crate::world::{TEST, World, Writer};
 fn start(run: &mut Writer, case: u32, name: &str, parent: Option<u32>) {
     let joint = Parameter { name: "joint".to_owned(), value: case.to_string() };
     let start = CaseStart {
-        case: CaseId(case),
-        name: name.to_owned(),
         parent: parent.map(CaseId),
         parameters: vec![joint],
         tags: vec![format!("tag {case}")],
-        location: None,
+        ..CaseStart::new(CaseId(case), name.to_owned())
     };
     run.emit(EventKind::CaseStarted(Box::new(CaseStarted { test: TEST, start })));
 }
@@ -31,6 +29,7 @@ fn finish(run: &mut Writer, case: u32, verdict: Verdict) {
         decided_by: None,
         duration_us: None,
         carried: false,
+        rerun: false,
     }));
 }
 

@@ -29,10 +29,31 @@ class Starts:
         self._tags: dict[pytest.Item | pytest.Collector | None, frozenset[str]] = {
             None: frozenset()
         }
+        # The names of items whose node id is that of another item.
+        self._phases: dict[pytest.Item, str] = {}
+
+    def names(self, items: list[pytest.Item]) -> list[str]:
+        """Return the names of the cases for all items, and use them from now on.
+
+        The name of a case is the node id of its item. launch_pytest has two items with the
+        same node id, `X` and `X[shutdown_test]`; the second one is the case `X [shutdown]`.
+        """
+        known: set[str] = set()
+        for item in items:
+            if item.nodeid in known:
+                phase = _phase(item)
+                if phase:
+                    self._phases[item] = f"{item.nodeid} [{phase}]"
+            known.add(item.nodeid)
+        return [self.name_of(item) for item in items]
+
+    def name_of(self, item: pytest.Item) -> str:
+        """Return the name of the case for an item."""
+        return self._phases.get(item, item.nodeid)
 
     def of(self, item: pytest.Item) -> dict[str, object]:
         """Return the parameters of `case-started`."""
-        params: dict[str, object] = {"name": item.nodeid}
+        params: dict[str, object] = {"name": self.name_of(item)}
         path, line, _ = item.location
         if line is not None:
             params["location"] = {"file": f"{self._root}/{path}", "line": line + 1}
@@ -55,6 +76,15 @@ class Starts:
             tags = self._tags_of(node.parent).union(mark.name for mark in node.own_markers)
             tags = self._tags[node] = tags - _NO_TAGS
         return tags
+
+
+def _phase(item: pytest.Item) -> str:
+    """Return what the name of an item has in addition to the end of its node id."""
+    # A parameter can contain `::`, too.
+    ends = (at.end() for at in re.finditer("::", item.nodeid))
+    rests = (item.name.removeprefix(item.nodeid[end:]) for end in ends)
+    rest = next((rest for rest in rests if rest != item.name), "")
+    return rest.strip("[] ").removesuffix("_test")
 
 
 def as_text(value: object) -> str:

@@ -31,6 +31,7 @@ class Lister:
 
     def pytest_collection_finish(self, session: pytest.Session) -> None:
         """List all items."""
+        self._starts.names(session.items)
         for item in session.items:
             self._listing.case(self._starts.of(item))
 

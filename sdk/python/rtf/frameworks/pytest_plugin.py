@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import pytest
 
-from rtf.frameworks import stack_dump
+from rtf.frameworks import pytest_options, stack_dump
 from rtf.frameworks.connection import Connection
 from rtf.frameworks.listing import Listing
 from rtf.frameworks.pytest_fixture import rtf
@@ -31,8 +31,11 @@ def pytest_load_initial_conftests() -> None:
     _Host.connection = Connection.from_environment()
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_configure(config: pytest.Config) -> None:
     """Start to report or to list."""
+    if _Host.listing is not None or _Host.connection is not None:
+        pytest_options.run_all_items(config)
     plugin: object
     if _Host.listing is not None:
         from rtf.frameworks.pytest_lister import Lister  # noqa: PLC0415 - only what is used

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from rtf import session as rtf_session
-from rtf.frameworks import pytest_details
+from rtf.frameworks import pytest_details, pytest_options
 from rtf.frameworks.connection import Rejected, encoded_text, portions
 from rtf.frameworks.pytest_failures import DETAILS, FailureDetails
 from rtf.frameworks.pytest_texts import (
     collection_problem,
     expected_failure,
+    long_text,
     skip_reason,
     subtest_name,
 )
@@ -28,21 +29,49 @@ if TYPE_CHECKING:
 
 _PHASES = {"setup": "set-up: ", "teardown": "tear-down: "}
 
+# In their order.
+PHASES = ("setup", "call", "teardown")
+
 
 class OpenCase:
     """A case that runs."""
 
-    __slots__ = ("has_problem", "name", "outcome", "path", "reason", "seconds")
+    __slots__ = (
+        "has_problem",
+        "is_called",
+        "is_set_up",
+        "name",
+        "outcome",
+        "path",
+        "reason",
+        "rerun_in",
+        "seconds",
+        "start",
+    )
 
-    def __init__(self, path: str) -> None:
+    def __init__(self, start: dict[str, Any], path: str | None = None) -> None:
         """Its result is that of its messages, unless a report says otherwise."""
-        self.path = path
+        self.start = start
+        self.path: str = start["name"] if path is None else path
+        path = self.path
         # As JSON.
         self.name = encoded_text(path)
         self.seconds = 0.0
         self.has_problem = False
         self.outcome: str | None = None
         self.reason: str | None = None
+        # The phase in which a plug-in decided to run the item again.
+        self.rerun_in: str | None = None
+        self.is_set_up = False
+        self.is_called = False
+
+    def is_hidden(self) -> bool:
+        """Whether pytest did not get the report of the item's call.
+
+        The plug-in `flaky` withholds it if it runs the item again.
+        """
+        has_result = self.has_problem or self.outcome is not None or self.rerun_in is not None
+        return self.is_set_up and not self.is_called and not has_result
 
     def set(self, outcome: str, reason: str) -> None:
         """Set the result; the first one counts."""
@@ -52,7 +81,7 @@ class OpenCase:
     def report_result(self, connection: Connection) -> None:
         """Report that it has finished."""
         seconds, has_outcome = self.seconds, self.outcome is not None and not self.has_problem
-        if seconds and not has_outcome:
+        if seconds and not has_outcome and self.rerun_in is None:
             # Most cases.
             text = f'{{"name":{self.name},"duration_us":{int(seconds * 1e6)}}}'
             connection.post_encoded("case-finished", text)
@@ -62,6 +91,8 @@ class OpenCase:
             params["duration_us"] = int(seconds * 1e6)
         if has_outcome:
             params["outcome"], params["reason"] = self.outcome, self.reason
+        if self.rerun_in is not None:
+            params["rerun"] = True
         connection.post("case-finished", params)
 
 
@@ -77,15 +108,21 @@ class Reporter(FailureDetails):
         self._stop = Stop(KeyboardInterrupt)
         self._root = str(config.rootpath)
         self._starts = pytest_details.Starts(self._root)
-        self._items: dict[str, pytest.Item] = {}
+        # The item that runs, unless workers of pytest-xdist run them.
+        self._item: pytest.Item | None = None
         # The names of their files as JSON.
         self._files: dict[str, str] = {}
+        # By node id.
         self._open: dict[str, OpenCase] = {}
+        # Finished, unless the same item starts again.
+        self._held: dict[str, OpenCase] = {}
         # Modules that skip themselves: name and reason.
         self._skipped_modules: dict[str, str] = {}
         # Of problems whose reports have not arrived: by the item's name and the phase.
         self._details: dict[tuple[str, str | None], dict[str, object]] = {}
         self._is_planned = False
+        if SELECTION_VARIABLE in os.environ:
+            pytest_options.accept_part_of_coverage(config)
 
     # Collection
 
@@ -104,11 +141,10 @@ class Reporter(FailureDetails):
     ) -> Generator[None, None, None]:
         """Plan the items that remain, and deselect those that the runner does not want."""
         yield
-        self._items = {item.nodeid: item for item in items}
-        runs = self._plan(list(self._items))
-        dropped = [item for item in items if not runs[item.nodeid]]
+        runs = self._plan(self._starts.names(items))
+        dropped = [item for item in items if not runs[self._starts.name_of(item)]]
         if dropped:
-            items[:] = [item for item in items if runs[item.nodeid]]
+            items[:] = [item for item in items if runs[self._starts.name_of(item)]]
             config.hook.pytest_deselected(items=dropped)
 
     @pytest.hookimpl(optionalhook=True)
@@ -116,10 +152,7 @@ class Reporter(FailureDetails):
         """Plan what the workers of pytest-xdist have collected: all have the same items."""
         if self._is_planned:
             return
-        runs = self._plan(ids)
-        if SELECTION_VARIABLE not in os.environ and not all(runs[name] for name in ids):
-            text = "cases cannot be selected: `-n` of pytest-xdist must be in `param`"
-            self._connection.post("message", {"kind": "error", "text": text})
+        self._plan(ids)
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_configure_node(self, node: Any) -> None:
@@ -143,14 +176,38 @@ class Reporter(FailureDetails):
 
     # Items
 
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_protocol(self, item: pytest.Item) -> None:
+        """Keep the item, and let others run it."""
+        self._item = item
+
     def pytest_runtest_logstart(self, nodeid: str) -> None:
         """Start a case. With pytest-xdist, its first report starts it, which has its tags."""
-        item = self._items.get(nodeid)
+        held = self._held.pop(nodeid, None)
+        if held is not None:
+            self._report_hidden(held, self._details.pop((nodeid, "call"), {}))
+        item = self._item
         if item is not None:
+            self._release()
+            self._details.clear()
             self._start(nodeid, self._starts.of(item))
 
-    def _start(self, nodeid: str, params: dict[str, object]) -> OpenCase:
-        case = self._open[nodeid] = OpenCase(nodeid)
+    def _report_hidden(self, case: OpenCase, details: dict[str, Any]) -> None:
+        """Report an attempt of a case that a plug-in runs again without a report of it."""
+        text = details.pop("text", "the attempt failed, and a plug-in withholds the reason")
+        params = {"kind": "failure", "text": text, **details, "case": case.path}
+        self._connection.post("message", params)
+        case.rerun_in = "call"
+        case.report_result(self._connection)
+
+    def _release(self) -> None:
+        """Finish the cases that do not start again."""
+        for case in self._held.values():
+            case.report_result(self._connection)
+        self._held.clear()
+
+    def _start(self, nodeid: str, params: dict[str, Any]) -> OpenCase:
+        case = self._open[nodeid] = OpenCase(params)
         location: Any = params.get("location")
         if location is None or len(params) > 2:  # noqa: PLR2004 - and the name
             self._connection.post("case-started", params)
@@ -170,7 +227,9 @@ class Reporter(FailureDetails):
         Those that pytest calls first put the problem of a `unittest.TestCase` into the call.
         """
         if call.excinfo is not None:
-            self._details[item.nodeid, call.when] = self.details_of(item, call)
+            details = self.details_of(item, call)
+            details["text"] = call.excinfo.exconly()
+            self._details[item.nodeid, call.when] = details
         elif self._details:
             # Of a subtest, which did not need them.
             self._details.pop((item.nodeid, call.when), None)
@@ -187,10 +246,15 @@ class Reporter(FailureDetails):
         if case is None:
             start = getattr(report, DETAILS, {}).get("start", {"name": report.nodeid})
             case = self._start(report.nodeid, start)
+        elif _is_next_attempt(case, report):
+            case.report_result(self._connection)
+            case = self._start(report.nodeid, case.start)
         context = getattr(report, "context", None)
         if context is not None:
             self._report_subtest(case, report, context)
             return
+        case.is_set_up |= report.when == "setup" and report.passed
+        case.is_called |= report.when == "call"
         is_plain = report.outcome == "passed" and not hasattr(report, "wasxfail")
         if is_plain and report.when != "teardown":
             # Most reports. What else they contain is in the last one of the item, too.
@@ -203,8 +267,11 @@ class Reporter(FailureDetails):
     def pytest_runtest_logfinish(self, nodeid: str) -> None:
         """Finish a case."""
         self._session.send_samples()
-        self._details.clear()
         case = self._open.pop(nodeid, None)
+        if case is not None and case.is_hidden():
+            self._held[nodeid] = case
+            return
+        self._details.clear()
         if case is not None:
             case.report_result(self._connection)
 
@@ -213,7 +280,7 @@ class Reporter(FailureDetails):
         values = [{"name": key, "value": str(it)} for key, it in context.kwargs.items()]
         start = {"name": name, "parent": parent.path, "parameters": values}
         self._connection.post("case-started", start)
-        case = OpenCase(f"{parent.path}/{name}")
+        case = OpenCase(start, f"{parent.path}/{name}")
         self._judge(case, report)
         self._report_leftovers(case, report, with_properties=False)
         case.report_result(self._connection)
@@ -225,19 +292,20 @@ class Reporter(FailureDetails):
             self._report_problem(case, report)
         elif report.skipped and expected is not None:
             case.set("skipped", expected_failure(expected))
-            self._message(case, "report", report.longreprtext)
+            self._message(case, "report", long_text(report))
         elif report.skipped:
             case.set("skipped", skip_reason(report))
         elif report.outcome != "passed":
-            # `rerun`, of pytest-rerunfailures
-            self._message(case, "report", f"{report.outcome}: {report.longreprtext}")
+            # `rerun` of pytest-rerunfailures, `retried` of pytest-retry
+            case.rerun_in = report.when
+            self._report_problem(case, report)
         elif expected is not None:
             self._message(case, "report", "; ".join(filter(None, ("unexpected pass", expected))))
 
     def _report_problem(self, case: OpenCase, report: pytest.TestReport) -> None:
         details = self._details_of(report)
-        long = report.longreprtext
-        if report.when not in {"setup", "call", "teardown"}:
+        long = long_text(report)
+        if report.when not in PHASES:
             # A worker of pytest-xdist died, and nothing finishes the item.
             case.set("crashed", long)
             self.pytest_runtest_logfinish(report.nodeid)
@@ -301,6 +369,7 @@ class Reporter(FailureDetails):
                 case.set("error", reason)
                 case.report_result(self._connection)
             self._open.clear()
+            self._release()
 
     def pytest_internalerror(self, excrepr: object) -> None:
         """Report an error of pytest or a plug-in."""
@@ -313,4 +382,12 @@ class Reporter(FailureDetails):
     def pytest_unconfigure(self) -> None:
         """Everything is reported."""
         self._session.send_samples()
+        self._release()
         self._connection.post("finished", {})
+
+
+def _is_next_attempt(case: OpenCase, report: pytest.TestReport) -> bool:
+    """Whether a report is not of the attempt of a case that a plug-in decided to repeat."""
+    if case.rerun_in not in PHASES or report.when not in PHASES:
+        return False
+    return PHASES.index(report.when) <= PHASES.index(case.rerun_in)

@@ -14,13 +14,42 @@ from rtf.frameworks.pytest_failures import DETAILS, FailureDetails
 from rtf.frameworks.stop import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
+    from collections.abc import Generator, Iterator
 
-# The file with the names of the selected items, a JSON list. Without it, all run.
+# The file with the selection, a JSON object. Without it, all items run.
 SELECTION_VARIABLE = "RTF_SELECTED_CASES"
 
 # The values of fixtures in the controller's input for a worker.
 VALUES = "rtf_fixture_values"
+
+
+class Selection:
+    """The selected items that have not finished."""
+
+    def __init__(self, selection: dict[str, Any]) -> None:
+        """Use the selectors of the runner: `equals` and `contains`."""
+        wanted: list[dict[str, str]] = selection["wanted"]
+        self._finished = frozenset(selection["finished"])
+        self._paths = frozenset(each["equals"] for each in wanted if "equals" in each)
+        self._outer = frozenset(outer for path in self._paths for outer in _outer_paths(path))
+        self._texts = [each["contains"] for each in wanted if "contains" in each]
+        self._is_all = not wanted
+
+    def includes(self, name: str) -> bool:
+        """Whether an item runs. A path also selects the cases in it and around it."""
+        if name in self._finished:
+            return False
+        return (
+            self._is_all
+            or name in self._paths
+            or name in self._outer
+            or any(outer in self._paths for outer in _outer_paths(name))
+            or any(text in name for text in self._texts)
+        )
+
+
+def _outer_paths(path: str) -> Iterator[str]:
+    return (path[:at] for at, character in enumerate(path) if character == "/")
 
 
 class WorkerDetails(FailureDetails):
@@ -48,9 +77,9 @@ class WorkerDetails(FailureDetails):
         file = os.environ.get(SELECTION_VARIABLE)
         if file:
             with open(file, encoding="utf-8") as stream:
-                selected = frozenset(json.load(stream))
-            dropped = [item for item in items if item.nodeid not in selected]
-            items[:] = [item for item in items if item.nodeid in selected]
+                selection = Selection(json.load(stream))
+            dropped = [item for item in items if not selection.includes(item.nodeid)]
+            items[:] = [item for item in items if selection.includes(item.nodeid)]
             config.hook.pytest_deselected(items=dropped)
 
     @pytest.hookimpl(hookwrapper=True, tryfirst=True)

@@ -45,7 +45,7 @@ export class CaseList {
                 break;
             }
             case 'case-started': {
-                if (event.parent == null)
+                if (event.parent == null && !event.earlier_attempts)
                     this.planned = this.planned.filter((name) => name !== event.name);
                 if (!this.byId.has(event.case)) this.byId.set(event.case, this.started(event));
                 break;
@@ -60,6 +60,7 @@ export class CaseList {
                     ...(event.carried ? { carried: true } : {}),
                     ...(event.reason == null ? {} : { reason: event.reason }),
                 });
+                if (event.rerun) this.supersede(event.case);
                 break;
             }
         }
@@ -102,11 +103,20 @@ export class CaseList {
         return rows;
     }
 
-    /** Number of finished cases by verdict, without those that are not listed. */
+    /** Another attempt of a case decides. */
+    private supersede(id: number): void {
+        for (const each of this.within(id)) {
+            const found = this.byId.get(each);
+            if (found !== undefined) this.byId.set(each, { ...found, superseded: true });
+        }
+    }
+
+    /** Number of finished cases by verdict, without those that are not listed. Of a case that
+     *  its framework ran again, the last attempt counts. */
     counts(): Partial<Record<Verdict, number>> {
         const counts: Partial<Record<Verdict, number>> = {};
-        for (const { verdict } of this.byId.values())
-            if (verdict !== undefined) counts[verdict] = (counts[verdict] ?? 0) + 1;
+        for (const { verdict, superseded } of this.byId.values())
+            if (verdict !== undefined && !superseded) counts[verdict] = (counts[verdict] ?? 0) + 1;
         return counts;
     }
 
@@ -126,6 +136,7 @@ export class CaseList {
 
     private started(event: Extract<Event, { type: 'case-started' }>): Case {
         const { case: id, name, parent, parameters, tags, location, at } = event;
+        const earlier = event.earlier_attempts;
         const above = parent == null ? undefined : this.byId.get(parent);
         return {
             case: id,
@@ -133,6 +144,7 @@ export class CaseList {
             path: above === undefined ? name : `${above.path}/${name}`,
             started: at,
             ...(parent == null ? {} : { parent }),
+            ...(earlier ? { earlier_attempts: earlier } : {}),
             ...(parameters === undefined ? {} : { parameters }),
             ...(tags === undefined ? {} : { tags }),
             ...(location == null ? {} : { location: location as NonNullable<Case['location']> }),

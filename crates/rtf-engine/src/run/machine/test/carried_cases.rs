@@ -162,6 +162,10 @@ impl CaseHistory {
     }
 
     pub fn finish(&mut self, event: &CaseFinished, problem: Option<&TestProblem>, now: Duration) {
+        if event.rerun {
+            // The case has not finished yet.
+            return;
+        }
         let Some(case) = self.get_mut(event.case) else { return };
         let problem = problem.filter(|_| case.is_top()).cloned();
         case.end = Some(PastEnd { event: event.clone(), at: now, problem });

@@ -10,6 +10,7 @@ use rtf_model::{
 
 use super::TestRun;
 use super::carried_cases::{CarriedCases, CaseHistory};
+use super::case_reruns::{CaseName, CaseReruns};
 use crate::run::machine::context::Context;
 use crate::run::machine::judge::{Judgement, TestProblem, judge};
 use rtf_plan::plan::{AfterCollapse, TestPlan};
@@ -22,6 +23,7 @@ const NAMES_SHOWN: usize = 3;
 pub(super) struct OpenCase {
     id: CaseId,
     parent: Option<CaseId>,
+    name: CaseName,
     /// Its name, after those of the cases that contain it.
     path: String,
     first_problem: Option<TestProblem>,
@@ -48,6 +50,17 @@ pub(super) struct OpenCases {
     announced: usize,
     /// The paths of selected cases that have not started.
     awaited: Vec<String>,
+    reruns: CaseReruns,
+}
+
+/// The end of a case, as its host reports it.
+#[derive(Debug)]
+pub(super) struct FinishedCase {
+    pub case: CaseId,
+    pub outcome: Option<Outcome>,
+    pub reason: Option<String>,
+    pub duration_us: Option<u64>,
+    pub rerun: bool,
 }
 
 /// The result of a case apart from its reported problems.
@@ -55,6 +68,8 @@ pub(super) struct OpenCases {
 enum CaseResult {
     /// As its host reports it.
     OfCase(Verdict, Option<String>),
+    /// The same, and another attempt of it follows.
+    OfAttempt(Verdict, Option<String>),
     /// The test was stopped or its process ended, which is no problem of the case alone.
     OfTest {
         verdict: Verdict,
@@ -115,6 +130,16 @@ impl OpenCases {
         self.history = Some(Box::new(carried.into_history()));
     }
 
+    /// Names a case that starts, and returns whether another one has the same name.
+    fn name(&mut self, start: &CaseStart) -> (CaseName, bool) {
+        if let Some(due) = self.reruns.take(start) {
+            return (due.next(), false);
+        }
+        let host_name = start.name.clone();
+        let (name, is_repeated) = unique(&mut self.names, start.parent, start.name.clone());
+        (CaseName { host_name, name, attempt: 1 }, is_repeated)
+    }
+
     /// Returns the number in this attempt of a case that the host numbered.
     fn number(&self, case: CaseId) -> Option<CaseId> {
         case.0.checked_add(self.carried).map(CaseId)
@@ -124,6 +149,10 @@ impl OpenCases {
     pub fn open(&self, case: Option<CaseId>) -> Option<CaseId> {
         let case = self.number(case?)?;
         self.open.iter().any(|open| open.id == case).then_some(case)
+    }
+
+    fn is_top(&self, case: CaseId) -> bool {
+        self.open.iter().any(|open| open.id == case && open.parent.is_none())
     }
 
     pub fn get_mut(&mut self, case: CaseId) -> Option<&mut OpenCase> {
@@ -199,14 +228,16 @@ impl TestRun<'_> {
         if start.name.trim().is_empty() {
             start.name = format!("case {}", start.case);
         }
-        let (name, is_repeated) = unique(&mut cases.names, start.parent, start.name);
+        let (name, is_repeated) = cases.name(&start);
+        (start.name, start.earlier_attempts) = (name.name.clone(), name.attempt - 1);
         let parent = start.parent.and_then(|id| cases.get_mut(id));
-        let path = parent.map_or(name.clone(), |parent| format!("{}/{name}", parent.path));
-        if start.parent.is_none() {
-            cases.planned.start(&name);
+        let path = parent.map_or(start.name.clone(), |it| format!("{}/{}", it.path, start.name));
+        if start.parent.is_none() && name.attempt == 1 {
+            cases.planned.start(&start.name);
         }
         cases.awaited.retain(|awaited| *awaited != path);
-        if is_repeated {
+        // The framework of a program may run a case several times.
+        if is_repeated && self.plan.cases_in_programs.is_none() {
             let message =
                 format!("two cases of `{}` have one name; one is `{path}`", self.plan.name);
             cx.emit(EventKind::Warning {
@@ -214,8 +245,9 @@ impl TestRun<'_> {
             });
         }
         let (id, parent) = (start.case, start.parent);
-        cases.open.push(OpenCase { id, parent, path, first_problem: None, inner_problem: None });
-        let started = CaseStarted { test: self.plan.id, start: CaseStart { name, ..start } };
+        let (first_problem, inner_problem) = (None, None);
+        cases.open.push(OpenCase { id, parent, name, path, first_problem, inner_problem });
+        let started = CaseStarted { test: self.plan.id, start };
         if let Some(history) = &mut cases.history {
             history.start(&started.start, cx.now());
             if is_repeated && parent.is_none() {
@@ -225,13 +257,8 @@ impl TestRun<'_> {
         cx.emit(EventKind::CaseStarted(Box::new(started)));
     }
 
-    pub(super) fn finish_case(
-        &mut self,
-        case: CaseId,
-        (outcome, reason): (Option<Outcome>, Option<String>),
-        duration_us: Option<u64>,
-        cx: &mut Context<'_>,
-    ) {
+    pub(super) fn finish_case(&mut self, finished: FinishedCase, cx: &mut Context<'_>) {
+        let FinishedCase { case, outcome, reason, duration_us, rerun } = finished;
         let Some(number) = self.cases.open(Some(case)) else {
             return self.on_protocol_error(format!("finished case {case}, which is not open"), cx);
         };
@@ -248,7 +275,11 @@ impl TestRun<'_> {
             Some(Outcome::Crashed) => Verdict::Crashed,
             Some(Outcome::TimedOut) => Verdict::TimedOut,
         };
-        self.end_case(number, CaseResult::OfCase(verdict, reason), duration_us, cx);
+        let result = match rerun && self.cases.is_top(number) {
+            true => CaseResult::OfAttempt(verdict, reason),
+            false => CaseResult::OfCase(verdict, reason),
+        };
+        self.end_case(number, result, duration_us, cx);
     }
 
     /// Adds the finished cases of an earlier attempt.
@@ -282,6 +313,35 @@ impl TestRun<'_> {
             };
             self.end_case(open.id, result, None, cx);
         }
+        let result = ended.then_some((verdict, reason));
+        self.close_reruns(result.as_ref(), cx);
+    }
+
+    /// Ends the cases whose next attempts did not start, as the test if that was ended.
+    fn close_reruns(&mut self, ended: Option<&(Verdict, Option<String>)>, cx: &mut Context<'_>) {
+        while let Some(due) = self.cases.reruns.pop() {
+            self.cases.started += 1;
+            let case = CaseId(self.cases.started);
+            let CaseName { name, attempt, .. } = due.next();
+            let start = CaseStart { earlier_attempts: attempt - 1, ..CaseStart::new(case, name) };
+            let started = CaseStarted { test: self.plan.id, start };
+            if let Some(history) = &mut self.cases.history {
+                history.start(&started.start, cx.now());
+            }
+            let path = started.start.name.clone();
+            cx.emit(EventKind::CaseStarted(Box::new(started)));
+            let (first_problem, inner_problem) = (None, None);
+            let (id, parent, name) = (case, None, due.next());
+            self.cases.open.push(OpenCase { id, parent, name, path, first_problem, inner_problem });
+            let result = match ended {
+                Some((verdict, reason)) => {
+                    let (verdict, reason, innermost) = (*verdict, reason.clone(), None);
+                    CaseResult::OfTest { verdict, reason, innermost }
+                }
+                None => CaseResult::OfCase(Verdict::Error, Some(due.not_started())),
+            };
+            self.end_case(case, result, None, cx);
+        }
     }
 
     /// Judges a case: by its first problem, an inner problem, or `result` if that is worse.
@@ -296,8 +356,11 @@ impl TestRun<'_> {
         let mut open = self.cases.open.remove(index);
         let (test, phase) = (self.plan.id, self.phase);
         let mut problem = open.take_problem();
+        let rerun = matches!(result, CaseResult::OfAttempt(..));
         let (is_of_test, mut verdict, mut reason, mut decided_by) = match result {
-            CaseResult::OfCase(verdict, reason) => (false, verdict, reason, None),
+            CaseResult::OfCase(verdict, reason) | CaseResult::OfAttempt(verdict, reason) => {
+                (false, verdict, reason, None)
+            }
             CaseResult::OfTest { verdict, reason, innermost } => (true, verdict, reason, innermost),
         };
         match &problem {
@@ -313,11 +376,15 @@ impl TestRun<'_> {
         }
         let outer = problem.map(|problem| open.describe(problem));
         let carried = false;
-        let end = CaseFinished { test, case, verdict, reason, decided_by, duration_us, carried };
+        let end =
+            CaseFinished { test, case, verdict, reason, decided_by, duration_us, carried, rerun };
         if let Some(history) = &mut self.cases.history {
             history.finish(&end, outer.as_ref(), cx.now());
         }
         cx.emit(EventKind::CaseFinished(end));
+        if rerun {
+            return self.cases.reruns.add(open.name, outer);
+        }
         if let Some(problem) = outer {
             let kept = match open.parent.and_then(|parent| self.cases.get_mut(parent)) {
                 Some(parent) => &mut parent.inner_problem,

@@ -1,6 +1,7 @@
 //! One attempt of a test, from its start to the end of its process.
 
 mod carried_cases;
+mod case_reruns;
 mod cases;
 pub mod host;
 mod notifications;

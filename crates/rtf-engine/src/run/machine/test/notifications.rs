@@ -4,6 +4,7 @@ use rtf_model::protocol::Notification;
 use rtf_model::{CaseId, EventKind, Message, MessageKind, Phase, Verdict};
 
 use super::TestRun;
+use super::cases::FinishedCase;
 use super::questions::ENDED;
 use crate::hook::PROVIDED;
 use crate::run::machine::context::{Context, error_message};
@@ -31,8 +32,9 @@ impl TestRun<'_> {
             Notification::Stack { text } => self.on_host_dump(text, cx),
             Notification::CasesPlanned { names } => self.plan_cases(names, cx),
             Notification::CaseStarted(start) => self.start_case(start, cx),
-            Notification::CaseFinished { case, outcome, reason, duration_us } => {
-                self.finish_case(case, (outcome, reason), duration_us, cx);
+            Notification::CaseFinished { case, outcome, reason, duration_us, rerun } => {
+                let finished = FinishedCase { case, outcome, reason, duration_us, rerun };
+                self.finish_case(finished, cx);
             }
             Notification::QuestionAsked(question) => self.ask_person(question, cx),
             // Handled by the task of the process.

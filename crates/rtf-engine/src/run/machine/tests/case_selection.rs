@@ -22,16 +22,10 @@ fn initialized(world: &mut World<'_>, selects_cases: bool) {
 
 fn run_case(world: &mut World<'_>, name: &str) {
     let (case, name) = (CaseId(1), name.to_owned());
-    let start = CaseStart {
-        case,
-        name,
-        parent: None,
-        parameters: Vec::new(),
-        tags: Vec::new(),
-        location: None,
-    };
+    let start = CaseStart::new(case, name);
     world.input(TEST, ProcessEvent::Notified(Notification::CaseStarted(start)));
-    let end = Notification::CaseFinished { case, outcome: None, reason: None, duration_us: None };
+    let (outcome, reason, duration_us, rerun) = (None, None, None, false);
+    let end = Notification::CaseFinished { case, outcome, reason, duration_us, rerun };
     world.input(TEST, ProcessEvent::Notified(end));
 }
 

@@ -18,14 +18,7 @@ impl World<'_> {
     pub(super) fn case(&mut self, case: u32, name: &str, parent: Option<u32>) {
         let (case, parent) = (CaseId(case), parent.map(CaseId));
         let name = name.to_owned();
-        let start = CaseStart {
-            case,
-            name,
-            parent,
-            parameters: Vec::new(),
-            tags: Vec::new(),
-            location: None,
-        };
+        let start = CaseStart { parent, ..CaseStart::new(case, name) };
         self.notified(Notification::CaseStarted(start));
     }
 
@@ -45,7 +38,16 @@ impl World<'_> {
             outcome,
             reason,
             duration_us: None,
+            rerun: false,
         });
+    }
+
+    /// A case ends with this outcome, and its framework runs it again.
+    pub(super) fn case_is_rerun(&mut self, case: u32, outcome: Outcome) {
+        let (case, outcome, reason) = (CaseId(case), Some(outcome), Some("no".to_owned()));
+        let (duration_us, rerun) = (None, true);
+        let end = Notification::CaseFinished { case, outcome, reason, duration_us, rerun };
+        self.notified(end);
     }
 
     pub(super) fn message_in(&mut self, case: u32, kind: MessageKind, text: &str) {
@@ -299,4 +301,49 @@ fn wrong_numbers_of_cases_are_protocol_errors() {
         let reason = format!("the host broke the protocol: {what}");
         assert_eq!(world.verdict(), (Verdict::Error, Some(&*reason)));
     }
+}
+
+#[test]
+fn the_last_attempt_of_a_case_decides() {
+    let plan = one_test();
+    let mut world = World::running(&plan);
+    world.plan_cases(&["a", "b"]);
+    world.case(1, "a", None);
+    world.message_in(1, MessageKind::Failure, "too slow");
+    world.case_is_rerun(1, Outcome::Failed);
+    world.case(2, "a", None);
+    world.case_ends(2);
+    world.case(3, "b", None);
+    world.case_ends(3);
+    world.over();
+    assert_eq!(world.verdict(), (Verdict::Passed, None));
+    assert!(world.record.tests[0].is_flaky());
+    assert_snapshot!(world.transcript(), @"");
+}
+
+#[test]
+fn a_case_that_fails_in_all_attempts_fails() {
+    let plan = one_test();
+    let mut world = World::running(&plan);
+    world.case(1, "a", None);
+    world.case_is_rerun(1, Outcome::Failed);
+    world.case(2, "a", None);
+    world.case_ends_with(2, Some(Outcome::Failed), Some("still no"));
+    world.end(TEST, "failed");
+    world.finish();
+    assert_eq!(world.verdict(), (Verdict::Failed, Some("case `a`: still no")));
+    assert_eq!(world.record.tests[0].attempts[0].cases.problems(), 1);
+}
+
+#[test]
+fn a_case_whose_next_attempt_does_not_start_is_no_pass() {
+    let plan = one_test();
+    let mut world = World::running(&plan);
+    world.case(1, "a", None);
+    world.case_is_rerun(1, Outcome::Failed);
+    world.over();
+    let reason = "case `a`: the test ended before the next attempt of the case; the last one: \
+                  case `a`: no";
+    assert_eq!(world.verdict(), (Verdict::Error, Some(reason)));
+    assert_eq!(world.record.tests[0].attempts[0].cases.total(), 1);
 }

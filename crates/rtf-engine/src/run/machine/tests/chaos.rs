@@ -42,15 +42,7 @@ fn report(choice: u8) -> Notification {
             let case = CaseId(1 + number / 64);
             let parent = (choice > 128).then_some(CaseId(1));
             let name = if parent.is_some() { "pose".to_owned() } else { format!("pose {case}") };
-            let (parameters, location) = (Vec::new(), None);
-            Notification::CaseStarted(CaseStart {
-                case,
-                name,
-                parent,
-                parameters,
-                tags: Vec::new(),
-                location,
-            })
+            Notification::CaseStarted(CaseStart { parent, ..CaseStart::new(case, name) })
         }
         2 if choice > 200 => {
             let names = (1..=3).map(|case| format!("pose {case}")).collect();
@@ -63,7 +55,8 @@ fn report(choice: u8) -> Notification {
         }
         3 => {
             let case = CaseId(1 + number / 128);
-            Notification::CaseFinished { case, outcome: None, reason: None, duration_us: None }
+            let (outcome, reason, duration_us, rerun) = (None, None, None, choice & 1 == 1);
+            Notification::CaseFinished { case, outcome, reason, duration_us, rerun }
         }
         _ => {
             let (kind, text, critical) = (MessageKind::Failure, "no".to_owned(), choice > 240);

@@ -1,0 +1,204 @@
+#!/usr/bin/env python3
+"""Runs pytest projects with rtf, and compares each case with pytest's own JUnit file.
+
+    check.py RTF PYTHON [PROJECT…]
+
+Each directory next to this file is a project: plug-ins, options and a layout as real projects
+have them. PYTHON has the plug-ins (`tools/requirements-pytest-projects.txt`).
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parent)]
+
+from observed import TestResult, observe  # noqa: E402
+
+SECONDS = 300
+
+FLAKY = {
+    "reruns": {
+        "test_reruns.py::test_passes_in_the_second_attempt": 2,
+        "test_reruns.py::test_is_set_up_in_the_second_attempt": 2,
+    },
+    "reruns_in_workers": {"test_workers.py::test_passes_in_the_second_attempt": 2},
+    "flaky_plugin": {"test_flaky.py::test_passes_in_the_second_attempt": 2},
+    "everything": {"tests/test_all.py::test_passes_in_the_second_attempt": 2},
+}
+"""The flaky cases of each project, with the number of their attempts."""
+
+REASONS = {
+    "workers": ("test_crash.py::test_ends_its_worker", "crashed while running"),
+    "reruns": ("test_reruns.py::test_is_never_torn_down", "tear-down: OSError: does not stop"),
+    "flaky_plugin": ("test_flaky.py::test_fails_in_all_attempts", "assert 0"),
+}
+"""The reason of a case that does not pass: a part of it."""
+
+PHASES = {
+    "phases": {"test_launch.py::test_phases_fail_at_the_end [shutdown]": "failed"},
+}
+"""Verdicts of cases with the node id of another one."""
+
+RANKS = ("passed", "skipped", "failed")
+"""Of several results with one name in JUnit's file, the worst one counts."""
+
+SUITE = '<suite name="s"><test type="pytest" name="t" param="{param}"> . </test></suite>\n'
+
+
+def main() -> int:
+    """Prints all differences; the exit code is 1 if there is any."""
+    rtf, python = str(Path(sys.argv[1]).resolve()), str(Path(sys.argv[2]).absolute())
+    names = sys.argv[3:] or sorted(it.name for it in HERE.iterdir() if any(it.glob("*.*")))
+    names = [name for name in names if not name.startswith((".", "_"))]
+    differences: list[str] = []
+    for name in names:
+        with tempfile.TemporaryDirectory() as directory:
+            found = list(Project(name, Path(directory)).differences(rtf, python))
+        print(f"{name}: {'different' if found else 'the same'}", flush=True)
+        differences += [f"{name}: {difference}" for difference in found]
+    print(f"{len(names)} projects, {len(differences)} failed")
+    for difference in differences:
+        print(f"different: {difference}")
+    return 1 if differences else 0
+
+
+class Project:
+    """A project, copied for each run, because pytest writes into it."""
+
+    def __init__(self, name: str, directory: Path) -> None:
+        """Copy it twice."""
+        self.name = name
+        self.own, self.ours = directory / "own" / name, directory / "ours" / name
+        for copy in (self.own, self.ours):
+            shutil.copytree(HERE / name, copy)
+        texts = (file.read_text() for file in self.own.glob("*.*") if file.is_file())
+        # Otherwise, all projects with its package installed have a random order.
+        self.options = [] if any("randomly" in text for text in texts) else ["-p", "no:randomly"]
+
+    def differences(self, rtf: str, python: str) -> Iterator[str]:
+        """Compare the cases, the exit code, and what is expected in addition."""
+        own, own_code = self.run_pytest(python)
+        test, code, output, counts = self.run_rtf(rtf, python)
+        ours = rtf_outcomes(test)
+        for name in sorted(own.keys() | ours.keys()):
+            if own.get(name) != ours.get(name):
+                yield f"{name}: pytest {own.get(name)}, rtf {ours.get(name)}"
+        if not own:
+            yield "pytest ran no test"
+        if (own_code == 0) != (code == 0):
+            yield f"exit code {own_code} of pytest, {code} of rtf: {test.reason}\n{output}"
+        # An error of the test itself would be one of rtf.
+        if not (own_code == 0 or test.reason.startswith("case ")):
+            yield f"the reason is that of no case: {test.reason}"
+        flaky = {path: attempts for path, attempts in counts.items() if attempts > 1}
+        flaky = {path: n for path, n in flaky.items() if test.cases[path].verdict == "passed"}
+        if flaky != FLAKY.get(self.name, {}):
+            yield f"flaky cases: {flaky}"
+        path, reason = REASONS.get(self.name, ("", ""))
+        if path and reason not in test.cases[path].reason:
+            yield f"{path}: reason: {test.cases[path].reason}"
+        for path, verdict in PHASES.get(self.name, {}).items():
+            if path not in test.cases or test.cases[path].verdict != verdict:
+                yield f"{path} is not {verdict}: {sorted(test.cases)}"
+
+    def run_pytest(self, python: str) -> tuple[dict[str, str], int]:
+        """Return the outcome of each test in pytest's own report, and the exit code."""
+        report = self.own.parent / "own.xml"
+        # Some have `-x` in `addopts`; the runner runs all cases.
+        options = [*self.options, "--maxfail=1000", f"--junitxml={report}"]
+        done = subprocess.run(
+            [python, "-m", "pytest", *options, "."],
+            cwd=self.own,
+            env=clean_environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            timeout=SECONDS,
+            check=False,
+        )
+        outcomes: dict[str, str] = {}
+        for case in ET.parse(report).getroot().iter("testcase"):
+            problems = {child.tag for child in case} & {"failure", "error", "skipped"}
+            outcome = "passed" if not problems else "failed"
+            outcome = "skipped" if problems == {"skipped"} else outcome
+            name = f"{case.get('classname')}.{case.get('name')}"
+            add(outcomes, name, outcome)
+        return outcomes, done.returncode
+
+    def run_rtf(self, rtf: str, python: str) -> tuple[TestResult, int, str, dict[str, int]]:
+        """Return the results in the journal, the exit code, the output, and attempts."""
+        suite = self.ours / "suite.xml"
+        suite.write_text(SUITE.format(param=" ".join(self.options)))
+        results = self.ours.parent / "results"
+        done = subprocess.run(
+            [rtf, "run", "--results", str(results), str(suite)],
+            cwd=self.ours,
+            env={**clean_environment(), "RTF_PYTHON": python},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            timeout=SECONDS,
+            check=False,
+        )
+        journal = (results / "latest" / "events.jsonl").read_text().splitlines()
+        events = [json.loads(line) for line in journal]
+        tests = observe(events)
+        return tests["t"], done.returncode, done.stdout, dict(attempts(events))
+
+
+def clean_environment() -> dict[str, str]:
+    """Return the environment without options of pytest."""
+    return {name: value for name, value in os.environ.items() if not name.startswith("PYTEST")}
+
+
+def attempts(events: list[dict[str, Any]]) -> Iterator[tuple[str, int]]:
+    """Return the number of attempts of each top-level case."""
+    for event in events:
+        if event["type"] == "case-started" and "parent" not in event:
+            yield event["name"], event.get("earlier_attempts", 0) + 1
+
+
+def add(outcomes: dict[str, str], name: str, outcome: str) -> None:
+    """Add an outcome; the worst one of a name counts."""
+    outcomes[name] = max(outcomes.get(name, outcome), outcome, key=RANKS.index)
+
+
+def rtf_outcomes(test: TestResult) -> dict[str, str]:
+    """Return the outcome of each top-level case under the name in JUnit's file."""
+    words = {"passed": "passed", "skipped": "skipped"}
+    last = {case.path: case for case in test.by_id.values() if case.parent is None}
+    outcomes: dict[str, str] = {}
+    for path, case in last.items():
+        name, separator, _ = path.rpartition(" [shutdown")
+        add(outcomes, junit_name(name if separator else path), words.get(case.verdict, "failed"))
+    return outcomes
+
+
+def junit_name(node_id: str) -> str:
+    """Return the class name and name that pytest writes for a node id."""
+    address, bracket, parameters = node_id.partition("[")
+    file, *rest = address.split("::")
+    name = ".".join([file.replace("/", ".").removesuffix(".py"), *rest])
+    return xml_text(f"{name}{bracket}{parameters}")
+
+
+def xml_text(text: str) -> str:
+    """Return a text as pytest writes characters that XML cannot have."""
+    return text
+
+
+if __name__ == "__main__":
+    sys.exit(main())

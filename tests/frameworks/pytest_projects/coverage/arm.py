@@ -1,0 +1,4 @@
+def move(joint):
+    if joint < 0:
+        raise ValueError(joint)
+    return joint + 1

@@ -1,0 +1,5 @@
+def test_next_to_doctests():
+    """
+    >>> 2 * 2
+    4
+    """

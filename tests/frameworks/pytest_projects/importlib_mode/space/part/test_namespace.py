@@ -1,0 +1,2 @@
+def test_in_a_namespace_package():
+    assert __name__

@@ -1,0 +1,6 @@
+def test_robot(robot):
+    assert robot == "simulated"
+
+
+def test_last():
+    pass
