@@ -318,7 +318,18 @@ fn the_last_attempt_of_a_case_decides() {
     world.over();
     assert_eq!(world.verdict(), (Verdict::Passed, None));
     assert!(world.record.tests[0].is_flaky());
-    assert_snapshot!(world.transcript(), @"");
+    assert_snapshot!(world.transcript(), @"
+    0.0  case-started case=1 name=a test=0
+    0.0  message source={test:0}
+    0.0  case-finished case=1 reason=too slow rerun=true test=0 verdict=failed
+    0.0  case-started case=2 earlier_attempts=1 name=a test=0
+    0.0  case-finished case=2 test=0 verdict=passed
+    0.0  case-started case=3 name=b test=0
+    0.0  case-finished case=3 test=0 verdict=passed
+    0.0    → close the channel
+    0.0  test-finished exit={code:0} phase=exit test=0 verdict=passed
+    0.0  suite-finished
+    ");
 }
 
 #[test]
