@@ -88,3 +88,58 @@ pub struct Selection<'a> {
     /// Whether these are all cases of the program, so that nothing needs to be selected.
     pub is_all: bool,
 }
+
+/// How often the arguments of a framework let it run each case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Repetition {
+    /// Once.
+    #[default]
+    Once,
+    /// Until it passes, at most this often; the last attempt counts.
+    UntilPass(u32),
+    /// Until it ends within its limit, at most this often; the last attempt counts.
+    AfterTimeout(u32),
+    /// Until it fails, at most this often; each time counts.
+    UntilFail(u32),
+}
+
+impl Repetition {
+    /// How often a case runs at most.
+    #[must_use]
+    pub fn times(self) -> u32 {
+        match self {
+            Self::Once => 1,
+            Self::UntilPass(times) | Self::AfterTimeout(times) | Self::UntilFail(times) => times,
+        }
+    }
+
+    /// After which results a case runs again, so that another attempt counts.
+    #[must_use]
+    pub fn retry(self) -> Option<Retry> {
+        match self {
+            Self::Once | Self::UntilFail(_) => None,
+            Self::UntilPass(_) => Some(Retry::AfterProblem),
+            Self::AfterTimeout(_) => Some(Retry::AfterTimeout),
+        }
+    }
+}
+
+/// After which results a case runs again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Retry {
+    /// It did not pass.
+    AfterProblem,
+    /// It reached its limit.
+    AfterTimeout,
+}
+
+impl Retry {
+    /// Whether a case with this result runs again.
+    #[must_use]
+    pub fn follows(self, outcome: Option<Outcome>, has_problem: bool) -> bool {
+        match self {
+            Self::AfterProblem => has_problem,
+            Self::AfterTimeout => outcome == Some(Outcome::TimedOut),
+        }
+    }
+}

@@ -11,7 +11,7 @@ use rtf_host::Session;
 use rtf_model::protocol::{CaseSelector, Notification};
 use rtf_model::{CaseId, CaseStart, MessageKind, Outcome};
 
-use crate::case::{CaseResult, Selection, StartedCase};
+use crate::case::{CaseResult, Retry, Selection, StartedCase};
 use crate::wanted::WantedCases;
 
 /// How many names a message lists.
@@ -41,6 +41,8 @@ pub struct CaseReporter<'a> {
     results: HashMap<String, bool>,
     /// Those that finished in the present process, which may repeat them.
     finished_here: HashSet<String>,
+    /// After which results the supervisor runs a top-level case again.
+    retry: Option<Retry>,
     skipped: usize,
     /// The top-level cases that are expected; `None` if any is.
     expected: Option<HashSet<String>>,
@@ -73,6 +75,7 @@ impl<'a> CaseReporter<'a> {
             open: Vec::new(),
             results: HashMap::new(),
             finished_here: HashSet::new(),
+            retry: None,
             skipped: 0,
             expected: None,
             wanted: None,
@@ -129,6 +132,11 @@ impl<'a> CaseReporter<'a> {
     #[must_use]
     pub fn has_plan(&self) -> bool {
         self.expected.is_some()
+    }
+
+    /// Sets after which results of a top-level case another attempt of it follows.
+    pub fn retry(&mut self, retry: Option<Retry>) {
+        self.retry = retry;
     }
 
     /// Whether a top-level case is still to be run.
@@ -196,10 +204,11 @@ impl<'a> CaseReporter<'a> {
         let open = self.open.remove(index);
         self.current = None;
         let CaseResult { outcome, reason, duration, rerun } = result;
-        let rerun = rerun && open.parent.is_none();
         let duration_us = duration.map(|it| u64::try_from(it.as_micros()).unwrap_or(u64::MAX));
         let is_bad = outcome.is_some_and(|it| !matches!(it, Outcome::Passed | Outcome::Skipped));
         let has_problem = open.has_problem || is_bad;
+        let is_retried = self.retry.is_some_and(|retry| retry.follows(outcome, has_problem));
+        let rerun = (rerun || is_retried) && open.parent.is_none();
         // The next attempt decides.
         self.has_problem |= has_problem && !rerun;
         if let Some(parent) = open.parent {

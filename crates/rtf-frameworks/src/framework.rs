@@ -8,7 +8,7 @@ use std::process::Command;
 use rtf_model::ExitStatus;
 use rtf_model::protocol::CaseSelector;
 
-use crate::case::{CaseResult, ListedCase, Selection};
+use crate::case::{CaseResult, ListedCase, Repetition, Selection};
 use crate::case_reporter::CaseReporter;
 use crate::last_output::LastOutput;
 
@@ -183,6 +183,11 @@ pub trait Framework {
     /// problem).
     fn decide(&self, _case: &ListedCase, _results: &HashMap<String, bool>) -> Option<CaseResult> {
         None
+    }
+
+    /// How often each case runs, if each one has a process.
+    fn repetition(&self, _test: &TestProgram) -> Repetition {
+        Repetition::Once
     }
 
     /// The result of a test without cases.

@@ -6,6 +6,7 @@ quietly cmake -S "$source" -B "$out/arm"
 # Its programs stay unbuilt.
 quietly cmake -S "$source/unbuilt" -B "$out/unbuilt-build" -G 'Ninja Multi-Config'
 quietly cmake -S "$source/circular" -B "$out/circular-build"
+quietly cmake -S "$source/repeat" -B "$out/repeat-build"
 quietly cmake --build "$out/arm"
 # No build directory.
 mkdir -p "$out/empty"

@@ -43,6 +43,10 @@ const RESERVED: [&str; 12] = [
     "--section",
 ];
 
+/// A prefix of a test specification that negates it.
+const EXCLUDE: &str = "exclude:";
+const EXCLUDE_WILDCARD: &str = "*xclude:";
+
 /// The adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct Catch2;
@@ -112,8 +116,13 @@ fn command(test: &TestProgram) -> Command {
 
 /// A test specification that only matches this case.
 fn pattern(case: &ListedCase) -> String {
+    let name = case.id.as_deref().unwrap_or(&case.name);
     let mut pattern = String::from("\"");
-    for character in case.id.as_deref().unwrap_or(&case.name).chars() {
+    // Catch2 reads the prefix also in quotes, as the exclusion of the rest. A wildcard in its
+    // place matches the name.
+    let rest = name.strip_prefix(EXCLUDE);
+    pattern.push_str(if rest.is_some() { EXCLUDE_WILDCARD } else { "" });
+    for character in rest.unwrap_or(name).chars() {
         if matches!(character, '\\' | ',' | '[' | ']' | '"' | '*') {
             pattern.push('\\');
         }
@@ -183,6 +192,9 @@ mod tests {
         let name = "a, [b] \"c\" \\ * ~".to_owned();
         let case = ListedCase { name, ..ListedCase::default() };
         assert_eq!(pattern(&case), r#""a\, \[b\] \"c\" \\ \* ~""#);
+        let name = "exclude:a*".to_owned();
+        let case = ListedCase { name, ..ListedCase::default() };
+        assert_eq!(pattern(&case), r#""*xclude:a\*""#);
     }
 
     #[test]

@@ -18,7 +18,7 @@ use std::time::Duration;
 
 use rtf_model::{Location, Outcome};
 
-use crate::case::{CaseResult, ListedCase};
+use crate::case::{CaseResult, ListedCase, Repetition};
 use crate::framework::{Framework, Launch, ListError, ReportChannel, ReportReader, TestProgram};
 use crate::listing;
 use properties::CTestCase;
@@ -120,6 +120,10 @@ impl Framework for CTest {
         }
     }
 
+    fn repetition(&self, test: &TestProgram) -> Repetition {
+        arguments(&test.args).map(|arguments| arguments.repetition).unwrap_or_default()
+    }
+
     fn accepts_exit(&self, _code: i32, _has_problem: bool) -> bool {
         true
     }
@@ -155,7 +159,7 @@ fn read_tests(test: &TestProgram) -> Result<Vec<CTestCase>, ListError> {
         return Err(ListError::new(message));
     }
     let mut command = Command::new("ctest");
-    command.current_dir(&test.file).arg("--show-only=json-v1").args(config(&test.args)?);
+    command.current_dir(&test.file).arg("--show-only=json-v1").args(arguments(&test.args)?.config);
     let found = listing::run(command, LIST_LIMIT)?;
     let is_empty = |tests: &Vec<CTestCase>| tests.is_empty() && test.args.is_empty();
     match parse_list(&found.stdout) {
@@ -185,20 +189,49 @@ pub(super) fn reader_of_first(list: &[u8], name: &str) -> Box<dyn ReportReader> 
     Box::new(judge::Judge::new(CTestCase { name: name.to_owned(), ..first }))
 }
 
-/// The arguments for `ctest`: only the configuration.
-fn config(args: &[String]) -> Result<&[String], ListError> {
-    let is_config = |arg: &String| CONFIG_OPTIONS.contains(&arg.as_str());
-    match args {
-        [] => Ok(args),
-        [option, _] if is_config(option) => Ok(args),
-        [option] if option.starts_with("--build-config=") => Ok(args),
-        _ => {
-            let args = args.join(" ");
-            let message = format!(
-                "`{args}`: the only argument is `-C CONFIGURATION`; rtf runs the tests itself; \
-                 select them with `cases`"
-            );
-            Err(ListError::new(message))
+/// What the arguments of a test say.
+#[derive(Debug, Default)]
+struct Arguments<'a> {
+    /// Those for `ctest`: the configuration.
+    config: Vec<&'a str>,
+    repetition: Repetition,
+}
+
+fn arguments(args: &[String]) -> Result<Arguments<'_>, ListError> {
+    let mut found = Arguments::default();
+    let mut rest = args.iter().map(String::as_str);
+    while let Some(arg) = rest.next() {
+        let (option, value) = arg.split_once('=').map_or((arg, None), |(it, v)| (it, Some(v)));
+        let value = value.or_else(|| rest.next());
+        match (option, value) {
+            (option, Some(value)) if CONFIG_OPTIONS.contains(&option) => {
+                found.config = vec!["--build-config", value];
+            }
+            ("--repeat", Some(value)) => {
+                found.repetition = repetition(value).ok_or_else(|| unknown_argument(args))?;
+            }
+            _ => return Err(unknown_argument(args)),
         }
     }
+    Ok(found)
+}
+
+/// `until-pass:3`.
+fn repetition(text: &str) -> Option<Repetition> {
+    let (mode, times) = text.split_once(':')?;
+    let times = times.parse().ok().filter(|times| *times > 0)?;
+    Some(match mode {
+        "until-pass" => Repetition::UntilPass(times),
+        "until-fail" => Repetition::UntilFail(times),
+        "after-timeout" => Repetition::AfterTimeout(times),
+        _ => return None,
+    })
+}
+
+fn unknown_argument(args: &[String]) -> ListError {
+    let args = args.join(" ");
+    ListError::new(format!(
+        "`{args}`: the only arguments are `-C CONFIGURATION` and `--repeat MODE:N`; rtf runs the \
+         tests itself; select them with `cases`"
+    ))
 }

@@ -24,9 +24,9 @@ const LIST_LIMIT: Duration = Duration::from_secs(900);
 /// An argument has at most 128 KiB.
 const PATTERN_BYTES: usize = 120 * 1024;
 
-/// Flags that would change which tests run and how often, or the report.
-const RESERVED: [&str; 10] =
-    ["-run", "-list", "-skip", "-bench", "-fuzz", "-count", "-cpu", "-json", "-c", "-v"];
+/// Flags that would change which tests run, or the report.
+const RESERVED: [&str; 9] =
+    ["-run", "-list", "-skip", "-bench", "-fuzz", "-cpu", "-json", "-c", "-v"];
 
 /// The adapter.
 #[derive(Clone, Copy, Debug)]

@@ -34,12 +34,11 @@ const BRIEF: &str = "--gtest_brief";
 const RUN_DISABLED: &str = "--gtest_also_run_disabled_tests";
 
 /// Flags that would change which tests run, or where results go.
-const RESERVED: [&str; 6] = [
+const RESERVED: [&str; 5] = [
     "--gtest_filter",
     "--gtest_output",
     "--gtest_list_tests",
     "--gtest_stream_result_to",
-    "--gtest_repeat",
     "--gtest_flagfile",
 ];
 

@@ -69,8 +69,7 @@ impl Framework for Pytest {
         if let Some(argument) = listing::reserved(&test.args, &RESERVED) {
             return Err(ListError::new(format!("with `{argument}`, pytest runs no tests")));
         }
-        let mut command = command(test);
-        command.args(["--collect-only", "-qq"]);
+        let command = command(test, &["--collect-only", "-qq"]);
         python::list(test, command, explain).map(Some)
     }
 
@@ -84,7 +83,7 @@ impl Framework for Pytest {
     }
 
     fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
-        let mut command = command(launch.test);
+        let mut command = command(launch.test, &[]);
         command.env_remove(SELECTION_VARIABLE);
         let selection = Selection::of(launch);
         if !selection.is_all() {
@@ -114,9 +113,10 @@ impl Framework for Pytest {
     }
 }
 
-fn command(test: &TestProgram) -> Command {
+fn command(test: &TestProgram, options: &[&str]) -> Command {
     let mut command = python::interpreter("pytest");
-    command.args(["-p", PLUGIN]).args(&test.args).arg(&test.file);
+    // The file is first: the last option of the suite may take any number of values.
+    command.args(["-p", PLUGIN]).args(options).arg(&test.file).args(&test.args);
     command
 }
 

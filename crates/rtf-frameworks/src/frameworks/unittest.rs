@@ -48,6 +48,6 @@ impl Framework for Unittest {
 
 fn command(test: &TestProgram) -> Command {
     let mut command = python::interpreter(RUNNER);
-    command.args(&test.args).arg(&test.file);
+    command.arg(&test.file).args(&test.args);
     command
 }

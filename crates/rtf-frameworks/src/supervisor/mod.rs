@@ -21,7 +21,7 @@ use rtf_model::protocol::{CaseSelector, FixtureValue, Plugin};
 use rtf_model::{ExitStatus, Outcome};
 use rustix::process::{Pid, Signal, kill_process_group};
 
-use crate::case::{CaseResult, ListedCase, Selection};
+use crate::case::{CaseResult, ListedCase, Repetition, Selection};
 use crate::case_reporter::CaseReporter;
 use crate::framework::{Framework, StackDump, TestProgram};
 use crate::wanted::WantedCases;
@@ -220,11 +220,24 @@ impl TestRun<'_> {
             cases.add(case.start(), result);
             return true;
         }
-        if self.framework.needs_separate_processes() {
-            cases.start(case.start());
+        let repetition = self.framework.repetition(&self.program);
+        for run in 1..=repetition.times() {
+            cases.retry(repetition.retry().filter(|_| run < repetition.times()));
+            if self.framework.needs_separate_processes() {
+                cases.start(case.start());
+            }
+            let cases_of_process = std::slice::from_ref(case);
+            self.process(Selection { cases: cases_of_process, is_all: false }, cases);
+            let has_passed = cases.results().get(&case.name).copied();
+            let goes_on = match repetition {
+                Repetition::UntilFail(_) => has_passed == Some(true),
+                _ => has_passed.is_none(),
+            };
+            if !goes_on || self.is_stopping() {
+                break;
+            }
         }
-        let cases_of_process = std::slice::from_ref(case);
-        self.process(Selection { cases: cases_of_process, is_all: false }, cases);
+        cases.retry(None);
         // The next case does not depend on how this process ended.
         true
     }
