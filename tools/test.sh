@@ -177,6 +177,7 @@ robots_and_frameworks() {
   step 'framework aunit' framework aunit
   step 'framework pytest' framework pytest
   step 'framework pytest public' public_pytest
+  step 'framework pytest projects' pytest_projects
   step 'framework unittest' framework unittest
   step 'framework ctest' framework ctest
   step 'framework tap' framework tap

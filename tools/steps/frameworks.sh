@@ -9,6 +9,13 @@ public_pytest() {
   python3 tests/frameworks/public/pytest_boltons.py "$TARGET/release/rtf" "$interpreter"
 }
 
+# Projects with many plug-ins, options and layouts, compared with pytest's own JUnit file.
+pytest_projects() {
+  local interpreter
+  interpreter=$(tools/venv.sh pytest-projects)/python
+  python3 tests/frameworks/pytest_projects/check.py "$TARGET/release/rtf" "$interpreter"
+}
+
 example_09() {
   local type settings plugins=$BUILD/examples/09-other-frameworks
   for type in gtest catch2 cppunit aunit junit; do

@@ -80,6 +80,7 @@ class Project:
         """Copy it twice."""
         self.name = name
         self.own, self.ours = directory / "own" / name, directory / "ours" / name
+        self.junit = directory / "junit.xml"
         for copy in (self.own, self.ours):
             shutil.copytree(HERE / name, copy)
         texts = (file.read_text() for file in self.own.glob("*.*") if file.is_file())
@@ -105,6 +106,11 @@ class Project:
         flaky = {path: n for path, n in flaky.items() if test.cases[path].verdict == "passed"}
         if flaky != FLAKY.get(self.name, {}):
             yield f"flaky cases: {flaky}"
+        reruns = dict(reruns_in(self.junit))
+        for path, attempts_of in counts.items():
+            expected = (attempts_of - 1, test.cases[path].verdict == "passed")
+            if attempts_of > 1 and reruns.get(path) != expected:
+                yield f"{path}: JUnit has {reruns.get(path)}, expected {expected}"
         path, reason = REASONS.get(self.name, ("", ""))
         if path and reason not in test.cases[path].reason:
             yield f"{path}: reason: {test.cases[path].reason}"
@@ -142,7 +148,7 @@ class Project:
         suite.write_text(SUITE.format(param=" ".join(self.options)))
         results = self.ours.parent / "results"
         done = subprocess.run(
-            [rtf, "run", "--results", str(results), str(suite)],
+            [rtf, "run", "--results", str(results), "--report", f"junit={self.junit}", str(suite)],
             cwd=self.ours,
             env={**clean_environment(), "RTF_PYTHON": python},
             stdin=subprocess.DEVNULL,
@@ -162,6 +168,14 @@ class Project:
 def clean_environment() -> dict[str, str]:
     """Return the environment without options of pytest."""
     return {name: value for name, value in os.environ.items() if not name.startswith("PYTEST")}
+
+
+def reruns_in(report: Path) -> Iterator[tuple[str, tuple[int, bool]]]:
+    """Return the number of reruns of each case, and whether it is flaky."""
+    for case in ET.parse(report).getroot().iter("testcase"):
+        tags = [child.tag for child in case if child.tag.startswith(("flaky", "rerun"))]
+        if tags:
+            yield case.attrib["name"], (len(tags), tags[0].startswith("flaky"))
 
 
 def attempts(events: list[dict[str, Any]]) -> Iterator[tuple[str, int]]:

@@ -67,6 +67,23 @@ describe('the cases of an attempt', () => {
         expect(list.counts()).toEqual({ passed: 1, failed: 1 });
     });
 
+    test('that their framework ran again count once', () => {
+        const again = { ...started(3, 'Arm'), earlier_attempts: 1 } as Event;
+        const list = listOf([
+            planned('Arm'),
+            started(1, 'Arm'),
+            started(2, 'Home', 1),
+            finished(2, 20, 'failed'),
+            { ...finished(1, 30, 'failed'), rerun: true } as Event,
+            again,
+            finished(3, 50, 'passed'),
+        ]);
+        expect(list.counts()).toEqual({ passed: 1 });
+        expect(shown(list)).toEqual(['Arm failed', '  Home failed', 'Arm passed']);
+        expect([1, 2, 3].map((id) => list.get(id)?.superseded ?? false)).toEqual([true, true, false]);
+        expect(list.get(3)?.earlier_attempts).toBe(1);
+    });
+
     test('that match are shown below the cases that contain them', () => {
         const list = listOf(NESTED);
         expect(shown(list, ({ verdict }) => verdict === 'failed')).toEqual([
