@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -50,6 +51,19 @@ PHASES = {
 }
 """Verdicts of cases with the node id of another one."""
 
+SELECTED = {
+    "everything": "tests/test_all.py::test_awaits",
+    "coverage": "test_coverage.py::test_raises",
+}
+"""A case that passes if it is selected, whatever the project's `addopts` are."""
+
+CONFIGURATIONS = (".ini", ".cfg", ".toml")
+
+INTRUSIVE = ("randomly", "flaky")
+"""Plug-ins that change each run if they are installed. A project that has them names them."""
+
+SUFFIX = re.compile(r" \[\w+\]$|#\d+$")
+
 RANKS = ("passed", "skipped", "failed")
 """Of several results with one name in JUnit's file, the worst one counts."""
 
@@ -65,7 +79,7 @@ def main() -> int:
     for name in names:
         with tempfile.TemporaryDirectory() as directory:
             found = list(Project(name, Path(directory)).differences(rtf, python))
-        print(f"{name}: {'different' if found else 'the same'}", flush=True)
+        print(f"{name}: {'different' if found else 'the same'}", *found, sep="\n  ", flush=True)
         differences += [f"{name}: {difference}" for difference in found]
     print(f"{len(names)} projects, {len(differences)} failed")
     for difference in differences:
@@ -83,14 +97,21 @@ class Project:
         self.junit = directory / "junit.xml"
         for copy in (self.own, self.ours):
             shutil.copytree(HERE / name, copy)
-        texts = (file.read_text() for file in self.own.glob("*.*") if file.is_file())
-        # Otherwise, all projects with its package installed have a random order.
-        self.options = [] if any("randomly" in text for text in texts) else ["-p", "no:randomly"]
+        files = (file for file in self.own.glob("*.*") if file.suffix in CONFIGURATIONS)
+        text = "".join(file.read_text() for file in files)
+        blocked = (plugin for plugin in INTRUSIVE if plugin not in text)
+        self.options = [word for plugin in blocked for word in ("-p", f"no:{plugin}")]
 
     def differences(self, rtf: str, python: str) -> Iterator[str]:
         """Compare the cases, the exit code, and what is expected in addition."""
         own, own_code = self.run_pytest(python)
         test, code, output, counts = self.run_rtf(rtf, python)
+        selected = SELECTED.get(self.name)
+        if selected is not None:
+            one, one_code, one_output, _ = self.run_rtf(rtf, python, selected)
+            verdicts = {path: case.verdict for path, case in one.cases.items()}
+            if (one_code, verdicts) != (0, {selected: "passed"}):
+                yield f"selected: exit code {one_code}, {verdicts}\n{one_output}"
         ours = rtf_outcomes(test)
         for name in sorted(own.keys() | ours.keys()):
             if own.get(name) != ours.get(name):
@@ -142,13 +163,18 @@ class Project:
             add(outcomes, name, outcome)
         return outcomes, done.returncode
 
-    def run_rtf(self, rtf: str, python: str) -> tuple[TestResult, int, str, dict[str, int]]:
+    def run_rtf(
+        self, rtf: str, python: str, case: str | None = None
+    ) -> tuple[TestResult, int, str, dict[str, int]]:
         """Return the results in the journal, the exit code, the output, and attempts."""
         suite = self.ours / "suite.xml"
         suite.write_text(SUITE.format(param=" ".join(self.options)))
         results = self.ours.parent / "results"
+        # The report is that of the run with all cases.
+        report = [] if case else ["--report", f"junit={self.junit}"]
+        target = f"{suite}::t/{case}" if case else str(suite)
         done = subprocess.run(
-            [rtf, "run", "--results", str(results), "--report", f"junit={self.junit}", str(suite)],
+            [rtf, "run", "--results", str(results), *report, target],
             cwd=self.ours,
             env={**clean_environment(), "RTF_PYTHON": python},
             stdin=subprocess.DEVNULL,
@@ -196,8 +222,9 @@ def rtf_outcomes(test: TestResult) -> dict[str, str]:
     last = {case.path: case for case in test.by_id.values() if case.parent is None}
     outcomes: dict[str, str] = {}
     for path, case in last.items():
-        name, separator, _ = path.rpartition(" [shutdown")
-        add(outcomes, junit_name(name if separator else path), words.get(case.verdict, "failed"))
+        # Phases and repetitions have the node id of another case.
+        node_id = next((it for it in SUFFIX.split(path)[:1] if it in last), path)
+        add(outcomes, junit_name(node_id), words.get(case.verdict, "failed"))
     return outcomes
 
 

@@ -13,7 +13,7 @@ from rtf.frameworks.connection import Connection
 from rtf.frameworks.listing import Listing
 from rtf.frameworks.pytest_fixture import rtf
 
-__all__ = ["pytest_configure", "pytest_load_initial_conftests", "rtf"]
+__all__ = ["pytest_cmdline_main", "pytest_configure", "pytest_load_initial_conftests", "rtf"]
 
 
 class _Host:
@@ -32,10 +32,14 @@ def pytest_load_initial_conftests() -> None:
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_configure(config: pytest.Config) -> None:
-    """Start to report or to list."""
+def pytest_cmdline_main(config: pytest.Config) -> None:
+    """Change options before the plug-ins read them."""
     if _Host.listing is not None or _Host.connection is not None:
         pytest_options.run_all_items(config)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Start to report or to list."""
     plugin: object
     if _Host.listing is not None:
         from rtf.frameworks.pytest_lister import Lister  # noqa: PLC0415 - only what is used

@@ -194,9 +194,11 @@ class Reporter(FailureDetails):
 
     def _report_hidden(self, case: OpenCase, details: dict[str, Any]) -> None:
         """Report an attempt of a case that a plug-in runs again without a report of it."""
-        text = details.pop("text", "the attempt failed, and a plug-in withholds the reason")
-        params = {"kind": "failure", "text": text, **details, "case": case.path}
-        self._connection.post("message", params)
+        if details or self._item is None:
+            # A worker of pytest-xdist does not report the problem.
+            text = details.pop("text", "the attempt failed, and a plug-in withholds the reason")
+            params = {"kind": "failure", "text": text, **details, "case": case.path}
+            self._connection.post("message", params)
         case.rerun_in = "call"
         case.report_result(self._connection)
 
