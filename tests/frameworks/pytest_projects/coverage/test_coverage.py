@@ -1,5 +1,4 @@
 import pytest
-
 from arm import move
 
 

@@ -1,6 +1,23 @@
 import pytest
 
-IDS = ["a::b", "a/b", "[x]", "two words", "ümläut", "tab\there", "", "a", "a", "%41", "#2", "a#2", "-n", "*?", "'quoted'", "x" * 300]
+IDS = [
+    "a::b",
+    "a/b",
+    "[x]",
+    "two words",
+    "ümläut",
+    "tab\there",
+    "",
+    "a",
+    "a",
+    "%41",
+    "#2",
+    "a#2",
+    "-n",
+    "*?",
+    "'quoted'",
+    "x" * 300,
+]
 
 
 @pytest.mark.parametrize("value", range(len(IDS)), ids=IDS)

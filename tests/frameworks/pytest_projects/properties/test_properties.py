@@ -1,4 +1,5 @@
-from hypothesis import HealthCheck, given, settings, strategies as st
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 calm = settings(
     max_examples=20, deadline=None, database=None, suppress_health_check=list(HealthCheck)

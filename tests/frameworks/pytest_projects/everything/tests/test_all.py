@@ -2,7 +2,8 @@ import asyncio
 
 import pytest
 from arm import move
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 runs = []
 
