@@ -1,0 +1,5 @@
+"""Is not collected."""
+
+
+def test_fails():
+    assert False
