@@ -261,6 +261,45 @@ mod tests {
         assert!(!is_relaxed_after(end), "the host measures the case");
     }
 
+    /// The notifications that the runner gets for these packets.
+    fn notifications(packets: &[&str]) -> String {
+        let (mut runner, theirs) = UnixStream::pair().unwrap();
+        let session = Session::over(theirs);
+        let mut cases = CaseReporter::new(&session);
+        let (mut ours, _program) = pair().unwrap();
+        for packet in packets {
+            ours.handle(packet.as_bytes(), &[], &mut cases);
+        }
+        runner.set_nonblocking(true).unwrap();
+        let mut bytes = vec![0; PACKET];
+        let length = std::io::Read::read(&mut runner, &mut bytes).unwrap();
+        String::from_utf8_lossy(&bytes[..length]).into_owned()
+    }
+
+    #[test]
+    fn a_case_can_run_several_times_in_a_process() {
+        let start = r#"{"method":"case-started","answer":false,"params":{"name":"a"}}"#;
+        let end = r#"{"method":"case-finished","answer":false,"params":{"name":"a"}}"#;
+        let rerun = r#"{"method":"case-finished","answer":false,
+            "params":{"name":"a","outcome":"failed","rerun":true}}"#;
+        let got = notifications(&[start, rerun, start, end, start, end]);
+        assert_eq!(got.matches("case-started").count(), 3, "{got}");
+        assert_eq!(got.matches("case-finished").count(), 3, "{got}");
+        assert_eq!(got.matches(r#""rerun":true"#).count(), 1, "{got}");
+        assert!(!got.contains("not running"), "{got}");
+    }
+
+    #[test]
+    fn an_end_without_a_start_is_an_error_only_if_it_is_a_problem() {
+        let end = r#"{"method":"case-finished","answer":false,"params":{"name":"a"}}"#;
+        let got = notifications(&[end]);
+        let text = "warning: the program finished `a`, which is not running";
+        assert!(got.contains(text) && got.contains(r#""kind":"report""#), "{got}");
+        let failed = end.replace(r#""a"}"#, r#""a","outcome":"failed","reason":"stuck"}"#);
+        let got = notifications(&[&failed]);
+        assert!(got.contains("not running: stuck") && got.contains(r#""kind":"error""#), "{got}");
+    }
+
     #[test]
     fn a_program_always_gets_an_answer() {
         assert!(ask_for_values(10).starts_with(br#"[{"name":"arm.port","value":"xxxxxxxxxx"}"#));

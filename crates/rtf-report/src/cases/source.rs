@@ -42,7 +42,9 @@ pub(crate) fn sources(test: &TestRecord) -> Vec<CaseSource<'_>> {
             if wanted.is_empty() {
                 break;
             }
-            let has_run = |case: &&CaseRecord| case.finished.is_some() && !case.is_carried();
+            let has_run = |case: &&CaseRecord| {
+                case.finished.is_some() && !case.is_carried() && !case.is_superseded
+            };
             let cases = earlier.cases.kept().iter().filter(has_run);
             let found = cases.filter_map(|case| {
                 wanted.remove(case.path.as_str()).map(|number| (case.start.case, number))
