@@ -12,6 +12,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import pytest
 
+# The values of fixtures in the controller's input for a worker of pytest-xdist.
+VALUES = "rtf_fixture_values"
+
 # Options that leave out items because of other results: how the suite would write them, and
 # their value without effect.
 _LEAVE_OUT: tuple[tuple[str, re.Pattern[str], object], ...] = (

@@ -12,6 +12,7 @@ from rtf.frameworks import pytest_options, stack_dump
 from rtf.frameworks.connection import Connection
 from rtf.frameworks.listing import Listing
 from rtf.frameworks.pytest_fixture import rtf
+from rtf.frameworks.pytest_options import VALUES
 
 __all__ = ["pytest_cmdline_main", "pytest_configure", "pytest_load_initial_conftests", "rtf"]
 
@@ -34,7 +35,9 @@ def pytest_load_initial_conftests() -> None:
 @pytest.hookimpl(tryfirst=True)
 def pytest_cmdline_main(config: pytest.Config) -> None:
     """Change options before the plug-ins read them."""
-    if _Host.listing is not None or _Host.connection is not None:
+    # A worker of pytest-xdist reads the configuration of the project, too.
+    is_worker = VALUES in getattr(config, "workerinput", ())
+    if is_worker or _Host.listing is not None or _Host.connection is not None:
         pytest_options.run_all_items(config)
 
 

@@ -12,6 +12,7 @@ from rtf import session as rtf_session
 from rtf.frameworks import pytest_details, pytest_options
 from rtf.frameworks.connection import Rejected, encoded_text, portions
 from rtf.frameworks.pytest_failures import DETAILS, FailureDetails
+from rtf.frameworks.pytest_options import VALUES
 from rtf.frameworks.pytest_texts import (
     collection_problem,
     expected_failure,
@@ -19,7 +20,7 @@ from rtf.frameworks.pytest_texts import (
     skip_reason,
     subtest_name,
 )
-from rtf.frameworks.pytest_worker import SELECTION_VARIABLE, VALUES
+from rtf.frameworks.pytest_worker import SELECTION_VARIABLE
 from rtf.frameworks.stop import Stop
 
 if TYPE_CHECKING:

@@ -11,6 +11,7 @@ import pytest
 from rtf import session as rtf_session
 from rtf.frameworks import pytest_details
 from rtf.frameworks.pytest_failures import DETAILS, FailureDetails
+from rtf.frameworks.pytest_options import VALUES
 from rtf.frameworks.stop import Stop
 
 if TYPE_CHECKING:
@@ -18,9 +19,6 @@ if TYPE_CHECKING:
 
 # The file with the selection, a JSON object. Without it, all items run.
 SELECTION_VARIABLE = "RTF_SELECTED_CASES"
-
-# The values of fixtures in the controller's input for a worker.
-VALUES = "rtf_fixture_values"
 
 
 class Selection:
