@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 from session_host import PYTEST, SessionHost, listed
 
+from rtf.frameworks.pytest_worker import Selection
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -236,3 +238,18 @@ def test_a_report_with_another_outcome_is_a_message(tmp_path: Path) -> None:
     (message,) = host.of("message")
     assert message["kind"] == "report"
     assert message["text"].startswith("rerun: ")
+
+
+def test_workers_select_what_the_runner_selects() -> None:
+    names = ("tests/a.py::x", "tests/a.py::y[1/2]", "tests2/a.py::x", "b.py::z")
+
+    def selected(*wanted: dict[str, str], finished: tuple[str, ...] = ()) -> list[str]:
+        selection = Selection({"wanted": list(wanted), "finished": finished})
+        return [name for name in names if selection.includes(name)]
+
+    assert selected() == list(names)
+    assert selected(finished=names[:3]) == ["b.py::z"]
+    assert selected({"equals": "tests"}) == ["tests/a.py::x", "tests/a.py::y[1/2]"]
+    assert selected({"equals": "tests/a.py::x"}, finished=names[:1]) == []
+    assert selected({"equals": "b.py::z/subtest"}) == ["b.py::z"]
+    assert selected({"contains": "a.py::x"}, {"equals": "b.py::z"}) == [*names[::2], "b.py::z"]
