@@ -166,7 +166,8 @@ class Project:
             problems = {child.tag for child in case} & {"failure", "error", "skipped"}
             outcome = "passed" if not problems else "failed"
             outcome = "skipped" if problems == {"skipped"} else outcome
-            name = f"{case.get('classname')}.{case.get('name')}"
+            # A module that skips itself has no class.
+            name = f"{case.get('classname')}.{case.get('name')}".lstrip(".")
             add(outcomes, name, outcome)
         return outcomes, done.returncode
 
@@ -232,6 +233,10 @@ def rtf_outcomes(test: TestResult) -> dict[str, str]:
         # Phases and repetitions have the node id of another case.
         node_id = next((it for it in SUFFIX.split(path)[:1] if it in last), path)
         add(outcomes, junit_name(node_id), words.get(case.verdict, "failed"))
+    # In JUnit's file, a skipped subtest is one of its test.
+    for case in test.by_id.values():
+        if case.parent is not None and case.verdict == "skipped":
+            add(outcomes, junit_name(test.by_id[case.parent].path), "skipped")
     return outcomes
 
 
