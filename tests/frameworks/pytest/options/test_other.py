@@ -2,4 +2,4 @@
 
 
 def test_fails():
-    assert False
+    raise AssertionError("it is collected")
