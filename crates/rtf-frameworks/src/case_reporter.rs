@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use rtf_host::Session;
 use rtf_model::protocol::{CaseSelector, Notification};
-use rtf_model::{CaseId, CaseStart, MessageKind, Outcome};
+use rtf_model::{CaseId, CaseStart, LeakedProcess, Outcome};
 
 use crate::case::{CaseResult, Retry, Selection, StartedCase};
 use crate::wanted::WantedCases;
@@ -63,6 +63,10 @@ pub struct CaseReporter<'a> {
     current: Option<String>,
     /// Whether the program skipped itself.
     is_skipped: bool,
+    /// Whether the present process runs one case only: what it leaves behind is left by this
+    /// case, whose end is held back until the process has ended.
+    has_only_case: bool,
+    held_end: Option<(CaseId, Notification)>,
 }
 
 impl<'a> CaseReporter<'a> {
@@ -87,6 +91,8 @@ impl<'a> CaseReporter<'a> {
             last_finished: None,
             current: None,
             is_skipped: false,
+            has_only_case: false,
+            held_end: None,
         }
     }
 
@@ -167,6 +173,9 @@ impl<'a> CaseReporter<'a> {
         if self.session.interrupted() {
             return;
         }
+        if parent.is_none() && (self.held_end.is_some() || !self.open.is_empty()) {
+            self.end_process();
+        }
         let parent = parent.and_then(|path| self.find(path));
         let (parent, path) = match parent {
             Some(open) => (Some(open.case), format!("{}/{}", open.path, case.name)),
@@ -203,7 +212,9 @@ impl<'a> CaseReporter<'a> {
         let Some(index) = self.open.iter().rposition(|open| open.case == case) else { return };
         let open = self.open.remove(index);
         self.current = None;
-        let CaseResult { outcome, reason, duration, rerun } = result;
+        let CaseResult { outcome, reason, duration } = result;
+        let is_held = self.has_only_case && open.parent.is_none();
+        let duration = duration.or_else(|| is_held.then(|| open.started.elapsed()));
         let duration_us = duration.map(|it| u64::try_from(it.as_micros()).unwrap_or(u64::MAX));
         let is_bad = outcome.is_some_and(|it| !matches!(it, Outcome::Passed | Outcome::Skipped));
         let has_problem = open.has_problem || is_bad;
@@ -224,38 +235,44 @@ impl<'a> CaseReporter<'a> {
                 self.record_result(open.path, !has_problem, is_skipped);
             }
         }
-        let finished = Notification::CaseFinished { case, outcome, reason, duration_us, rerun };
-        if !self.session.interrupted() && !self.session.forward(&finished) {
+        let finished = Notification::CaseFinished { case, outcome, reason, duration_us };
+        if self.session.interrupted() {
+            return;
+        }
+        self.report_end();
+        self.held_end = Some((case, finished));
+        if !is_held {
+            self.report_end();
+        }
+    }
+
+    /// Reports the end of the case that finished last.
+    fn report_end(&mut self) {
+        let Some((case, finished)) = self.held_end.take() else { return };
+        if !self.session.forward(&finished)
+            && let Notification::CaseFinished { outcome, duration_us, .. } = finished
+        {
             let reason = Some("the reason is longer than 16 MiB".to_owned());
             let end = Notification::CaseFinished { case, outcome, reason, duration_us, rerun };
             self.session.forward(&end);
         }
     }
 
-    /// A top-level case has finished, perhaps for a second time.
-    fn record_result(&mut self, name: String, has_passed: bool, is_skipped: bool) {
-        self.finished_here.insert(name.clone());
-        match self.results.entry(name) {
-            Entry::Occupied(mut before) => *before.get_mut() &= has_passed,
-            Entry::Vacant(place) => {
-                place.insert(has_passed);
-                self.skipped += usize::from(is_skipped);
-            }
+    /// The present process left these processes behind, which were killed.
+    pub fn leave(&mut self, processes: Vec<LeakedProcess>) {
+        if processes.is_empty() {
+            return;
         }
+        let held = self.held_end.as_ref().map(|(case, _)| *case);
+        let running = || self.open.iter().find(|open| open.parent.is_none()).map(|open| open.case);
+        let case = self.has_only_case.then(|| held.or_else(running)).flatten();
+        self.session.forward(&Notification::ProcessesLeft { case, processes });
     }
 
-    /// Reports the end of a case that is not open: a problem, if it did not pass.
-    fn report_unmatched(&mut self, path: &str, result: CaseResult) {
-        let text = format!("the program finished `{path}`, which is not running");
-        match result.outcome {
-            None | Some(Outcome::Passed | Outcome::Skipped) => {
-                self.message(None, MessageKind::Report, format!("warning: {text}"), None);
-            }
-            Some(_) => {
-                let reason = result.reason.map(|reason| format!(": {reason}")).unwrap_or_default();
-                self.test_error(format!("{text}{reason}"));
-            }
-        }
+    /// The result of the present process is complete.
+    pub fn end_process(&mut self) {
+        self.has_only_case = false;
+        self.report_end();
     }
 
     /// Starts and finishes a top-level case that does not run.
@@ -358,6 +375,7 @@ impl<'a> CaseReporter<'a> {
         (self.has_problem, self.finished, self.last_finished) = (false, 0, None);
         self.finished_here.clear();
         self.is_complete = false;
+        self.has_only_case = selection.cases.len() == 1;
         self.is_first_process = self.expected.is_none();
         let names = || selection.cases.iter().map(|case| case.name.clone()).collect();
         self.selection = (!selection.is_all).then(names);

@@ -43,6 +43,8 @@ pub fn run(args: Vec<OsString>) -> Result<(), Box<dyn std::error::Error>> {
         return Ok(check::check(&*framework, &rest[1..])?);
     }
     let session = Session::open()?;
+    // The supervisor kills what programs leave behind.
+    rtf_process::adopt_orphans()?;
     let host = host::FrameworkHost::new(name, framework, session.clone());
     Ok(rtf_host::serve(&session, host)?)
 }

@@ -163,6 +163,7 @@ pub fn decode_other(line: &[u8]) -> Option<Result<HostMessage, String>> {
             | Notification::CasesPlanned { .. }
             | Notification::CaseStarted(_)
             | Notification::CaseFinished { .. }
+            | Notification::ProcessesLeft { .. }
             | Notification::QuestionAsked(_),
         )) => None,
         Ok(HostMessage::Notification(_)) | Err(_) => Some(decoded),

@@ -2,7 +2,7 @@
 # shellcheck disable=SC2154 # tests/frameworks/build.sh sets the directories
 # The cargo that builds rtf; the corpus has no dependencies.
 setting CARGO_TARGET_DIR "$out/target"
-for package in arm silent; do
+for package in arm silent promises; do
   quietly env CARGO_TARGET_DIR="$out/target" cargo test --offline --no-run \
     --manifest-path "$source/$package/Cargo.toml"
 done

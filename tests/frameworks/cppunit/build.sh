@@ -16,6 +16,7 @@ cppunit_program() {
 
 cppunit_program arm_test arm_test.cpp -lcppunit
 cppunit_program broken_test broken_test.cpp -lcppunit
+cppunit_program promises_test promises_test.cpp -lcppunit
 cppunit_program odd_test odd_test.cpp -lcppunit
 cppunit_program header_test header_test.cpp -l:libcppunit.a -ldl
 cppunit_program static_test arm_test.cpp -l:libcppunit.a -ldl

@@ -8,5 +8,6 @@ quietly cmake -S "$source/unbuilt" -B "$out/unbuilt-build" -G 'Ninja Multi-Confi
 quietly cmake -S "$source/circular" -B "$out/circular-build"
 quietly cmake -S "$source/repeat" -B "$out/repeat-build"
 quietly cmake --build "$out/arm"
+quietly cmake -S "$source/promises" -B "$out/promises"
 # No build directory.
 mkdir -p "$out/empty"

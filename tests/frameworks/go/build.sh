@@ -4,4 +4,6 @@
 : "${source:?}"
 PATH=$(tools/go.sh):$PATH
 setting PATH "$PATH"
-(cd "$source/arm" && quietly go test -list . .)
+for package in arm promises; do
+  (cd "$source/$package" && quietly go test -list . .)
+done

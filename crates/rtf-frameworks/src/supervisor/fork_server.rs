@@ -14,6 +14,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use rtf_model::protocol::{FORK_VARIABLE, PROGRAM_FORKS_VARIABLE};
+use rtf_process::tree;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::{FdFlags, retry_on_intr};
 use rustix::net::{
@@ -97,9 +98,16 @@ impl ForkServer {
         command.env(PROGRAM_FORKS_VARIABLE, format!("{}{point}", theirs.as_raw_fd()));
         command.env(BIND_VARIABLE, "1");
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-        rtf_host::reset_signals(&mut command);
-        let process = command.process_group(0).spawn().ok()?;
+        command.process_group(0);
+        let pid_of =
+            |child: &io::Result<Child>| child.as_ref().ok().map(|it| it.id().cast_signed());
+        let process = tree::start_own_child(|| command.spawn(), pid_of).ok()?;
         Some(Self { socket, process, session, report })
+    }
+
+    /// The server's process id, which is also that of the group of the process forked ahead.
+    pub(super) fn pid(&self) -> Pid {
+        Pid::from_child(&self.process)
     }
 
     /// Waits for the first packet: the server's process id.
@@ -186,6 +194,7 @@ impl Drop for ForkServer {
         }
         let _ = self.process.kill();
         let _ = self.process.wait();
+        tree::remove_own_child(self.process.id().cast_signed());
         for pid in ahead {
             let _ = kill_process(pid, Signal::KILL);
             let _ = retry_on_intr(|| waitpid(Some(pid), WaitOptions::empty()));

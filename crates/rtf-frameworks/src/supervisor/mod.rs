@@ -14,12 +14,13 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use rtf_host::Session;
 use rtf_model::protocol::{CaseSelector, FixtureValue, Plugin};
-use rtf_model::{ExitStatus, Outcome};
-use rustix::process::{Pid, Signal, kill_process_group};
+use rtf_model::{ExitStatus, LeakedProcess, Outcome};
+use rtf_process::tree::{self, Effort};
+use rustix::process::{Pid, Signal, getpgid, kill_process_group};
 
 use crate::case::{CaseResult, ListedCase, Repetition, Selection};
 use crate::case_reporter::CaseReporter;
@@ -27,6 +28,10 @@ use crate::framework::{Framework, StackDump, TestProgram};
 use crate::wanted::WantedCases;
 use fork_server::{ForkPoint, ForkServer};
 use process::{ProcessEnd, Termination};
+
+/// How long killed processes may take to end, and the time between polls.
+const SWEEP_LIMIT: Duration = Duration::from_secs(5);
+const SWEEP_INTERVAL: Duration = Duration::from_millis(1);
 
 /// The process that runs cases at the moment, for other threads.
 #[derive(Clone, Debug, Default)]
@@ -70,6 +75,10 @@ pub fn dump_stack(running: &RunningProgram, kind: StackDump, file: &Path) -> Opt
     let pid = running.pid()?;
     running.was_dumped.store(true, Ordering::Relaxed);
     stack::dump(kind, pid, file)
+}
+
+fn group_of(pid: i32) -> Option<Pid> {
+    getpgid(Some(Pid::from_raw(pid)?)).ok()
 }
 
 /// One run of a test.
@@ -249,13 +258,36 @@ impl TestRun<'_> {
             [case] => self.case_timeout.into_iter().chain(case.timeout).min(),
             _ => self.case_timeout,
         };
-        match process::run(self, selection, limit, cases) {
+        let goes_on = match process::run(self, selection, limit, cases) {
             Ok(end) => self.conclude(&end, selection, cases),
             Err(reason) => {
                 cases.end_open(&CaseResult::new(Outcome::Error, reason.clone()));
                 cases.test_error(reason);
                 false
             }
+        };
+        cases.end_process();
+        goes_on
+    }
+
+    /// Kills what a process of the program left behind, which this process has adopted. Returns
+    /// the killed processes, without those of `killed_group`, when all have ended.
+    fn sweep(&self, killed_group: Option<Pid>) -> Vec<LeakedProcess> {
+        let server = self.fork_server.take();
+        let server_group = server.as_ref().map(ForkServer::pid);
+        self.fork_server.set(server);
+        // The process that is forked ahead is in the group of the server.
+        let is_ahead = |orphan: i32| group_of(orphan).is_some_and(|it| Some(it) == server_group);
+        let was_killed = |orphan: i32| group_of(orphan).is_some_and(|it| Some(it) == killed_group);
+        let deadline = Instant::now() + SWEEP_LIMIT;
+        let mut left = Vec::new();
+        loop {
+            let belongs = |orphan| !is_ahead(orphan) && !was_killed(orphan);
+            tree::add_new(&mut left, tree::sweep_if(Effort::Once, belongs));
+            if tree::orphans().all(is_ahead) || Instant::now() >= deadline {
+                return left;
+            }
+            std::thread::sleep(SWEEP_INTERVAL);
         }
     }
 

@@ -78,12 +78,11 @@ pub(super) fn run(
     test.running.set(None);
     let status = wait_for(pid).map_err(|error| format!("the program was lost: {error}"))?;
     process.drain(cases);
-    // What the program left in its group must not run next to the next process.
-    let _ = rustix::process::kill_process_group(pid, Signal::KILL);
-    let RunningProcess { mut reader, mut termination, last_output, .. } = process;
+    let RunningProcess { mut reader, mut termination, last_error, .. } = process;
     if test.is_stopping() {
         termination = Termination::Stopped;
     }
+    let is_killed = !matches!(termination, Termination::Exited);
     let reports = matches!(termination, Termination::Exited | Termination::CaseTimeout(_));
     if reports
         && let Err(garbage) = reader.finish(status, cases)
@@ -92,7 +91,12 @@ pub(super) fn run(
         termination = Termination::Garbage(garbage);
     }
     let crash_reason = reader.crash_reason();
-    Ok(ProcessEnd { status, termination, last_output, crash_reason })
+    // What the program left must not run next to the next process. After a stop, the runner waits
+    // for the rest.
+    if !matches!(termination, Termination::Stopped) {
+        cases.leave(test.sweep(is_killed.then_some(pid)));
+    }
+    Ok(ProcessEnd { status, termination, last_error_line: last_error.text(), crash_reason })
 }
 
 /// Starts a process: forks it if there is a fork server, which is given up when it fails.

@@ -15,10 +15,22 @@ pub(super) struct Framework {
     /// Whether `rtf run` lists them although no case is selected: the list checks the program,
     /// or compiles it.
     pub lists_before_run: bool,
+    /// Which of its cases `case-timeout` limits.
+    pub limits: CaseLimits,
     /// Which processes of its programs can be forked (`spec/frameworks.md`).
     pub forks: Forks,
     /// The limit of the check of one file; `None` for the usual one.
     pub check_limit: Option<Duration>,
+}
+
+/// Which cases of a test `case-timeout` limits: those whose start is reported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum CaseLimits {
+    All,
+    /// Subtests that the program announces.
+    AnnouncedSubtests,
+    /// There are none, or they are reported when the program has ended.
+    None,
 }
 
 /// Which processes of the programs of a framework can be forked.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use rtf_model::Diagnostic;
 
 use super::checks::{CheckId, PluginChecks, PluginUse};
-use super::framework_kind::Forks;
+use super::framework_kind::{CaseLimits, Forks};
 use super::frameworks::{self, FRAMEWORKS};
 use super::host_kind::HostKind;
 use super::search_scope::SearchScope;
@@ -19,6 +19,9 @@ use super::{
 };
 use crate::suite::{DeclaredLimits, DeclaredTest, ForkPoint, SourceText, Spanned, TestIsolation};
 use crate::wording::quoted;
+
+/// The hint for a limit of cases that has no effect.
+const TEST_LIMIT: &str = "`timeout` limits the whole test";
 
 /// A test of another framework.
 #[derive(Debug)]
@@ -143,7 +146,7 @@ pub(super) fn check_attributes(
     let Some(FrameworkTest { kind, .. }) = framework else {
         let attributes = [
             (patterns, "cases", "`rtf run SUITE::TEST/CASE` selects a case of a plug-in"),
-            (cases.case_timeout, "case-timeout", "`timeout` limits the whole test"),
+            (cases.case_timeout, "case-timeout", TEST_LIMIT),
             (separate, "isolation=\"case\"", "each test already has a separate process"),
             (fork, "fork", "`rtf run --fork` chooses how processes of plug-ins start"),
         ];
@@ -169,9 +172,19 @@ pub(super) fn check_attributes(
             report(span, message, "if the program can select tests, use `param`");
         }
     }
+    let limits = kind.framework.map_or(CaseLimits::All, |framework| framework.limits);
+    if let (Some(span), CaseLimits::None) = (cases.case_timeout, limits) {
+        let message = format!("`case-timeout` cannot limit the cases of a test of type `{name}`");
+        report(span, message, TEST_LIMIT);
+    }
     let forks = kind.framework.map_or(Forks::Never, |framework| framework.forks);
     if let (Some(span), Some((message, hint))) = (fork, fork_problem(forks, separate.is_some())) {
         report(span, message.to_owned(), &hint);
+    }
+    if let (Some(span), CaseLimits::AnnouncedSubtests) = (cases.case_timeout, limits) {
+        let message = format!("`case-timeout` limits only announced subtests of type `{name}`");
+        let warning = Diagnostic::warning("without-effect", message).hint(TEST_LIMIT);
+        problems.push(warning.label(source.label(span, "")));
     }
     problems
 }

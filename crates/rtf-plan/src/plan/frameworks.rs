@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use super::framework_kind::{Forks, Framework, TestSubject};
+use super::framework_kind::{CaseLimits, Forks, Framework, TestSubject};
 use super::host_kind::{HostKind, HostStart};
 use super::sdk::{PYTHON_SDK, Sdk};
 
@@ -16,12 +16,15 @@ const LISTED_PROGRAM: Framework = Framework {
     subject: TestSubject::Program,
     lists_cases: true,
     lists_before_run: true,
+    limits: CaseLimits::All,
     forks: Forks::Never,
     check_limit: LIST_LIMIT,
 };
 const FORKED_PROGRAM: Framework = Framework { forks: Forks::IfSeparate, ..LISTED_PROGRAM };
 const UNLISTED_PROGRAM: Framework =
     Framework { lists_cases: false, check_limit: None, ..LISTED_PROGRAM };
+const UNLIMITED_CASES: Framework = Framework { limits: CaseLimits::None, ..UNLISTED_PROGRAM };
+const TAP: Framework = Framework { limits: CaseLimits::AnnouncedSubtests, ..UNLISTED_PROGRAM };
 const PYTHON_TESTS: Framework =
     Framework { subject: TestSubject::FileOrDirectory, lists_before_run: false, ..LISTED_PROGRAM };
 const BUILT_DIRECTORY: Framework =
@@ -44,12 +47,12 @@ pub(super) static FRAMEWORKS: [HostKind; 15] = [
     kind(&["ctest"], Framework { check_limit: LIST_LIMIT, ..BUILT_DIRECTORY }),
     HostKind {
         extensions: &["test"],
-        ..kind(&["rostest"], Framework { subject: TestSubject::File, ..UNLISTED_PROGRAM })
+        ..kind(&["rostest"], Framework { subject: TestSubject::File, ..UNLIMITED_CASES })
     },
     kind(&["cargo"], BUILT_DIRECTORY),
     kind(&["go"], BUILT_DIRECTORY),
-    kind(&["tap"], UNLISTED_PROGRAM),
-    kind(&["program"], UNLISTED_PROGRAM),
+    kind(&["tap"], TAP),
+    kind(&["program"], UNLIMITED_CASES),
 ];
 
 /// The arguments of the host are the name of the type.

@@ -212,7 +212,8 @@ fn attributes_of_other_types_are_errors() {
          <matrix name='n' values='1 2'/></test>\n\
          <test type='gtest' isolation='shared'>arm_test</test>\n\
          <test type='tap' cases='*' isolation='case' case-timeout='1s'>arm_test</test>\n\
-         <test type='gtest' cases=' '>arm_test</test>\n</suite>",
+         <test type='gtest' cases=' '>arm_test</test>\n\
+         <test type='program' case-timeout='1s'>arm_test</test>\n</suite>",
     );
     insta::assert_snapshot!(shown, @"
     not-of-this-type: `cases` is only for tests of other frameworks
@@ -236,8 +237,14 @@ fn attributes_of_other_types_are_errors() {
     not-of-this-type: `isolation=\"case\"` needs a list of cases, which a test of type `tap` does not have
       4:39 case
       hint: if the program can select tests, use `param`
+    without-effect: `case-timeout` limits only announced subtests of type `tap`
+      4:59 1s
+      hint: `timeout` limits the whole test
     invalid-value: `cases` is empty
       5:27
+    not-of-this-type: `case-timeout` cannot limit the cases of a test of type `program`
+      6:36 1s
+      hint: `timeout` limits the whole test
     ");
 }
 

@@ -41,8 +41,15 @@ impl Effort {
     }
 }
 
-/// Repeats passes until enough of them found nothing new, or the limit has passed.
-pub(super) fn sweep_if(effort: Effort, belongs: impl Fn(i32) -> bool) -> Vec<LeakedProcess> {
+/// The orphans that this process has adopted, alive or not.
+pub fn orphans() -> impl Iterator<Item = i32> {
+    children_of(OWN_TASKS).into_iter().filter(|pid| !is_own_child(*pid))
+}
+
+/// Kills the adopted orphans that belong to something, and everything below them. Returns the
+/// killed processes. Repeats passes until enough of them found nothing new, or the limit has
+/// passed.
+pub fn sweep_if(effort: Effort, belongs: impl Fn(i32) -> bool) -> Vec<LeakedProcess> {
     let start = Instant::now();
     let mut sweep = Sweep::default();
     let mut quiet = 0;

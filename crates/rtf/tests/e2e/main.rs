@@ -37,6 +37,7 @@ mod faults;
 mod fixture_values;
 mod forked_children;
 mod forked_hosts;
+mod framework_leaks;
 mod framework_programs;
 mod golden;
 mod guard;

@@ -166,12 +166,17 @@ fn status_of(exit: Option<ExitStatus>) -> String {
     exit.map_or_else(|| "an unknown status".to_owned(), |status| status.to_string())
 }
 
-/// Why leaked processes make a passed test an error, if its plan says so.
+/// Why leaked processes make a passed test or case an error, if the plan says so.
 pub fn leak_problem(policy: Leaks, leaked: &[LeakedProcess]) -> Option<String> {
-    match (policy, leaked) {
-        (Leaks::Report, _) | (_, []) => None,
-        (Leaks::Fail, [one]) => Some(format!("it left a process behind: {}", one.command)),
-        (Leaks::Fail, [first, ..]) => {
+    describe_leak(leaked).filter(|_| policy == Leaks::Fail)
+}
+
+/// Describes leaked processes in one line.
+pub fn describe_leak(leaked: &[LeakedProcess]) -> Option<String> {
+    match leaked {
+        [] => None,
+        [one] => Some(format!("it left a process behind: {}", one.command)),
+        [first, ..] => {
             Some(format!("it left {} processes behind, first: {}", leaked.len(), first.command))
         }
     }

@@ -4,15 +4,14 @@ use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use rtf_model::{
-    CaseFinished, CaseId, CaseStart, CaseStarted, Diagnostic, EventKind, Outcome, Phase,
-    PlannedCases, Verdict,
+    CaseFinished, CaseId, CaseStart, CaseStarted, Diagnostic, EventKind, LeakedProcess, Message,
+    MessageKind, Outcome, Phase, PlannedCases, Verdict,
 };
 
 use super::TestRun;
 use super::carried_cases::{CarriedCases, CaseHistory};
-use super::case_reruns::{CaseName, CaseReruns};
-use crate::run::machine::context::Context;
-use crate::run::machine::judge::{Judgement, TestProblem, judge};
+use crate::run::machine::context::{Context, error_message};
+use crate::run::machine::judge::{Judgement, TestProblem, describe_leak, judge, leak_problem};
 use rtf_plan::plan::{AfterCollapse, TestPlan};
 
 /// The number of names that a problem lists.
@@ -29,6 +28,8 @@ pub(super) struct OpenCase {
     first_problem: Option<TestProblem>,
     /// The first of the worst problems in the cases that it contains.
     inner_problem: Option<TestProblem>,
+    /// The processes that it left behind, if it does not pass with these.
+    leak: Option<String>,
 }
 
 /// The open cases of an attempt.
@@ -245,9 +246,9 @@ impl TestRun<'_> {
             });
         }
         let (id, parent) = (start.case, start.parent);
-        let (first_problem, inner_problem) = (None, None);
-        cases.open.push(OpenCase { id, parent, name, path, first_problem, inner_problem });
-        let started = CaseStarted { test: self.plan.id, start };
+        let (first_problem, inner_problem, leak) = (None, None, None);
+        cases.open.push(OpenCase { id, parent, path, first_problem, inner_problem, leak });
+        let started = CaseStarted { test: self.plan.id, start: CaseStart { name, ..start } };
         if let Some(history) = &mut cases.history {
             history.start(&started.start, cx.now());
             if is_repeated && parent.is_none() {
@@ -280,6 +281,27 @@ impl TestRun<'_> {
             false => CaseResult::OfCase(verdict, reason),
         };
         self.end_case(number, result, duration_us, cx);
+    }
+
+    /// The host killed what a program left behind, which is a problem of the case only if the
+    /// program ran no other one.
+    pub(super) fn on_processes_left(
+        &mut self,
+        case: Option<CaseId>,
+        processes: Vec<LeakedProcess>,
+        cx: &mut Context<'_>,
+    ) {
+        let policy = self.plan.settings.leaks;
+        let case = self.cases.open(case);
+        match case.and_then(|case| self.cases.get_mut(case)) {
+            Some(open) => open.leak = leak_problem(policy, &processes),
+            None => self.left.extend_from_slice(&processes),
+        }
+        if let (Some(_), Some(text)) = (case, describe_leak(&processes)) {
+            let message = Message { case, kind: MessageKind::Report, ..error_message(text) };
+            cx.emit(EventKind::Message { source: self.source(), message, test: None });
+        }
+        cx.report_leaked(self.source(), processes);
     }
 
     /// Adds the finished cases of an earlier attempt.
@@ -363,6 +385,9 @@ impl TestRun<'_> {
             }
             CaseResult::OfTest { verdict, reason, innermost } => (true, verdict, reason, innermost),
         };
+        if let (Verdict::Passed, None, Some(leak)) = (verdict, &problem, open.leak.take()) {
+            (verdict, reason) = (Verdict::Error, Some(leak));
+        }
         match &problem {
             Some(problem) if problem.verdict.severity() >= verdict.severity() => {
                 (verdict, reason) = (problem.verdict, Some(problem.reason.clone()));

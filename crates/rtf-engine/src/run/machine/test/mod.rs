@@ -13,7 +13,7 @@ mod verdict;
 use std::time::Duration;
 
 use rtf_model::protocol::{Reply, StackSupport};
-use rtf_model::{EventKind, Phase, Source, StopCause, TestId, Verdict};
+use rtf_model::{EventKind, LeakedProcess, Phase, Source, StopCause, TestId, Verdict};
 
 use crate::run::machine::context::Context;
 use crate::run::machine::host_replies::{parse_answer, parse_initialized};
@@ -57,7 +57,8 @@ pub struct TestRun<'p> {
     /// Whether fixtures were notified that its process has ended.
     is_end_notified: bool,
     has_fixtures: bool,
-    leak: Option<String>,
+    /// What it left behind, apart from what one of its cases left.
+    left: Vec<LeakedProcess>,
     output: OutputCapture,
     cases: OpenCases,
     /// Its questions that wait for an answer.
@@ -103,7 +104,7 @@ impl<'p> TestRun<'p> {
             state: AttemptState::Running,
             is_end_notified: false,
             has_fixtures: !suite.fixtures.is_empty(),
-            leak: None,
+            left: Vec::new(),
             output: OutputCapture::new(Source::Test(plan.id)),
             cases: OpenCases::new(plan),
             questions: Vec::new(),

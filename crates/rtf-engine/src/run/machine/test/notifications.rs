@@ -36,6 +36,9 @@ impl TestRun<'_> {
                 let finished = FinishedCase { case, outcome, reason, duration_us, rerun };
                 self.finish_case(finished, cx);
             }
+            Notification::ProcessesLeft { case, processes } => {
+                self.on_processes_left(case, processes, cx);
+            }
             Notification::QuestionAsked(question) => self.ask_person(question, cx),
             // Handled by the task of the process.
             Notification::Attached(_) | Notification::Trajectory(_) => {}

@@ -53,7 +53,8 @@ impl TestRun<'_> {
         self.stopwatch = None;
         self.clear(TestTimer::Slow, cx);
         self.output.finish(cx);
-        self.record_left(leaked, cx);
+        self.left.extend_from_slice(&leaked);
+        cx.report_leaked(self.source(), leaked);
         (self.evidence.exit, self.evidence.released) = (exit, self.is_released);
         let verdict = judge(&self.evidence, self.phase).verdict;
         let may_have_collapsed = self.has_fixtures && self.evidence.stopped.is_none();
@@ -136,7 +137,8 @@ impl TestRun<'_> {
         self.clear(TestTimer::Slow, cx);
         self.close_cases(cx);
         let mut judgement = judge(&self.evidence, self.phase);
-        let late_problem = self.leak.take().or_else(|| self.cases.not_run_problem());
+        let leak = leak_problem(self.plan.settings.leaks, &self.left);
+        let late_problem = leak.or_else(|| self.cases.not_run_problem());
         if let (Verdict::Passed, Some(problem)) = (judgement.verdict, late_problem) {
             (judgement.verdict, judgement.reason) = (Verdict::Error, Some(problem));
         }

@@ -1,0 +1,14 @@
+// The cases of tests/frameworks/promises.json.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <cstdlib>
+
+#include <doctest/doctest.h>
+
+TEST_CASE("first") {}
+
+TEST_CASE("second")
+{
+    CHECK(std::system(std::getenv("PROMISE")) == 0);
+}
+
+TEST_CASE("third") {}

@@ -1,0 +1,3 @@
+module example.org/promises
+
+go 1.20

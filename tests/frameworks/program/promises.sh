@@ -1,0 +1,3 @@
+#!/bin/sh
+# The program of tests/frameworks/promises.json.
+sh -c "$PROMISE"

@@ -1,0 +1,199 @@
+#!/usr/bin/env python3
+"""Checks the promises about every test on the tests of a framework.
+
+    promises.py RTF TYPE
+
+`promises.json` is the table. Each program in it has three cases: `first` and `third` pass, and
+`second` runs the shell command in `PROMISE`. A promise has
+
+    does          the command
+    attributes    of the test
+    when          `interrupt` or `collapse`: what happens while the command runs; it has then
+                  written `$PROMISE_DIR/runs`
+    expected      `verdict`; `reason`: its start; `left`: how many processes were left behind,
+                  by default 0; `stdout`, `stderr`: a part of it; `cases`: those that did not pass,
+                  with `null` for one that is not reported
+    separate      replaces parts of it if each case has a process
+
+and a type
+
+    file, param   of its tests
+    modes         `process`: one process for all cases; `case`: the same with isolation="case";
+                  `always`: each case has a process
+    cases         the names of the cases, by default the same
+    except        for each promise that it cannot keep: replaces parts of `expected`, or `refused`
+                  is a part of what `rtf check` prints
+"""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+from xml.sax.saxutils import quoteattr
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tools")]
+
+from observed import TestResult, observe  # noqa: E402
+from run import Run  # noqa: E402
+
+Table = dict[str, Any]
+POLL_SECS = 0.02
+CASES = {"first": "first", "second": "second", "third": "third"}
+
+
+def main() -> int:
+    """Prints all broken promises; the exit code is 1 if there is any."""
+    rtf, framework = str(Path(sys.argv[1]).resolve()), sys.argv[2]
+    table: Table = json.loads((Path(__file__).parent / "promises.json").read_text())
+    if framework not in table["types"]:
+        raise SystemExit(f"promises.json has no type `{framework}`")
+    with tempfile.TemporaryDirectory() as name:
+        promises = Promises(rtf, framework, table, Path(name))
+        promises.check()
+    print(f"\n{promises.checked} promises kept, {len(promises.broken)} broken")
+    for broken in promises.broken:
+        print(f"broken: {broken}")
+    return 1 if promises.broken else 0
+
+
+class Promises:
+    """The promises to one framework."""
+
+    def __init__(self, rtf: str, framework: str, table: Table, directory: Path) -> None:
+        self.rtf, self.framework, self.directory = rtf, framework, directory
+        self.type: Table = table["types"][framework]
+        self.promises: dict[str, Table] = table["promises"]
+        self.cases: dict[str, str] = self.type.get("cases", CASES)
+        self.broken: list[str] = []
+        self.checked = 0
+
+    def check(self) -> None:
+        """Runs all tests that nothing disturbs in one suite, and each other test alone."""
+        together: dict[str, tuple[Table, str]] = {}
+        for name, promise in self.promises.items():
+            if "refused" in self.exception(name):
+                self.check_refused(name, promise)
+                continue
+            for mode in self.type["modes"]:
+                title = f"{name} ({mode})"
+                if "when" in promise:
+                    self.check_disturbed(title, name, promise, mode)
+                else:
+                    together[title] = (promise, mode)
+        run = self.start("all", {title: self.test(title, *each) for title, each in together.items()})
+        run.wait()
+        events = list(run.events())
+        results = observe(events)
+        for title, (_, mode) in together.items():
+            self.compare(title, mode, results[title], left_of(events, title))
+
+    def exception(self, name: str) -> Table:
+        """What the type does not keep of a promise."""
+        exceptions: Table = self.type.get("except", {})
+        found: Table = exceptions.get(name, {})
+        return found
+
+    def test(self, title: str, promise: Table, mode: str) -> str:
+        """The test of a promise."""
+        attributes = {"name": title, "type": self.framework, "param": self.type.get("param", "")}
+        attributes |= promise.get("attributes", {})
+        if mode == "case":
+            attributes["isolation"] = "case"
+        words = " ".join(f"{key}={quoteattr(value)}" for key, value in attributes.items())
+        command = quoteattr(promise["does"])
+        return f"<test {words}>{self.file()}<env name='PROMISE' value={command}/></test>"
+
+    def file(self) -> str:
+        """The file of all tests."""
+        source = ROOT / "tests/frameworks" / self.framework
+        out = ROOT / "build/frameworks" / self.framework
+        text: str = self.type["file"]
+        return text.format(source=source, out=out)
+
+    def suite(self, title: str, tests: dict[str, str], fixture: str = "") -> Path:
+        """Writes a suite; returns its directory."""
+        directory = self.directory / title.replace(" ", "-")
+        directory.mkdir()
+        variables = {"MARK": "a b", "PROMISE_DIR": str(directory)}
+        lines = [f"<env name='{key}' value='{value}'/>" for key, value in variables.items()]
+        text = "\n".join([*lines, fixture, *tests.values()])
+        (directory / "suite.xml").write_text(f"<suite name='promises' parallel='3'>\n{text}\n</suite>\n")
+        return directory
+
+    def start(self, title: str, tests: dict[str, str], fixture: str = "") -> Run:
+        """Starts a run of tests."""
+        directory = self.suite(title, tests, fixture)
+        return Run(self.rtf, str(directory / "suite.xml"), directory / "results")
+
+    def check_refused(self, name: str, promise: Table) -> None:
+        """`rtf check` reports a promise that the type does not keep."""
+        directory = self.suite(name, {name: self.test(name, promise, self.type["modes"][0])})
+        command = [self.rtf, "check", str(directory / "suite.xml")]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        self.expect(f"{name}: exit code of `rtf check`", done.returncode != 0, True)
+        text = self.exception(name)["refused"]
+        self.expect(f"{name}: `{text}` in {done.stderr!r}", text in done.stderr, True)
+
+    def check_disturbed(self, title: str, name: str, promise: Table, mode: str) -> None:
+        """Interrupts a run while its command runs, or lets its fixture collapse."""
+        directory = self.directory / title.replace(" ", "-")
+        wait = f"while ! test -e {directory}/collapse; do sleep 0.05; done"
+        arm = f"<fixture name='arm' type='process'><command>sh -c {quoteattr(wait)}</command></fixture>"
+        fixture = arm if promise["when"] == "collapse" else ""
+        run = self.start(title, {title: self.test(title, promise, mode)}, fixture)
+        try:
+            while not (directory / "runs").exists() and run.process.poll() is None:
+                time.sleep(POLL_SECS)
+            if promise["when"] == "collapse":
+                (directory / "collapse").touch()
+            else:
+                run.process.send_signal(signal.SIGINT)
+        finally:
+            run.wait()
+        events = list(run.events())
+        self.compare(title, mode, observe(events)[title], left_of(events, title))
+
+    def compare(self, title: str, mode: str, got: TestResult, left: int) -> None:
+        """Compares a result with the table."""
+        name = title.removesuffix(f" ({mode})")
+        promise = self.promises[name]
+        expected: Table = {**promise["expected"], **self.exception(name)}
+        if mode != "process":
+            expected |= promise.get("separate", {})
+        self.expect(f"{title}: verdict ({got.reason})", got.verdict, expected["verdict"])
+        reason = expected.get("reason", "")
+        has_reason = got.reason.startswith(reason) or got.reason.partition(": ")[2].startswith(reason)
+        self.expect(f"{title}: `{reason}` starts {got.reason!r}", has_reason, True)
+        self.expect(f"{title}: processes left", left, expected.get("left", 0))
+        for stream in ("stdout", "stderr"):
+            text = expected.get(stream, "")
+            self.expect(f"{title}: `{text}` in {stream}", text in got.output[stream], True)
+        verdicts = {case: "passed" for case in self.cases} | expected.get("cases", {})
+        wanted = {self.cases[case]: verdicts[case] for case in self.cases if verdicts[case]}
+        found = {case.path: case.verdict for case in got.by_id.values() if case.parent is None}
+        self.expect(f"{title}: cases", found, wanted)
+
+    def expect(self, what: str, got: object, expected: object) -> None:
+        """Remembers a broken promise."""
+        self.checked += got == expected
+        if got != expected:
+            self.broken.append(f"{what}: got {got!r}, expected {expected!r}")
+
+
+def left_of(events: list[Table], title: str) -> int:
+    """How many processes a test left behind."""
+    planned = {event["name"]: event["test"] for event in events if event["type"] == "test-planned"}
+    source = {"test": planned[title]}
+    leaks = [event for event in events if event["type"] == "processes-leaked"]
+    return sum(len(event["processes"]) for event in leaks if event["source"] == source)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
