@@ -205,13 +205,14 @@ static char **await_request(int socket, int taken, int *count)
     static char text[REQUEST_BYTES];
     struct Request request = {.text = text};
     const char byte = 0;
-    setpgid(0, 0);
     // The server forks the next process while this one runs.
     if (!receive(socket, &request) || write(taken, &byte, sizeof byte) != sizeof byte) {
         _exit(0);
     }
     close(taken);
     close(socket);
+    // Until now, it was in the group of the server, by which the supervisor recognizes it.
+    setpgid(0, 0);
     place_descriptors(&request, request.text);
     return program_strings(&request, next(request.text), count);
 }

@@ -1,0 +1,19 @@
+"""The cases of tests/frameworks/promises.json."""
+
+import os
+import subprocess
+import unittest
+
+
+class Promises(unittest.TestCase):
+    """Three cases."""
+
+    def test_1_first(self) -> None:
+        """Passes."""
+
+    def test_2_second(self) -> None:
+        """Runs the command."""
+        subprocess.run(["sh", "-c", os.environ["PROMISE"]], check=True)
+
+    def test_3_third(self) -> None:
+        """Passes."""
