@@ -11,7 +11,7 @@
     when          `interrupt` or `collapse`: what happens while the command runs; it has then
                   written `$PROMISE_DIR/runs`
     expected      `verdict`; `reason`: a part of it; `left`: how many processes were left behind,
-                  by default 0, or `null` for any number; `stdout`, `stderr`: a part of it;
+                  by default 0; `stdout`, `stderr`: a part of it;
                   `cases`: those that did not pass, with `null` for one that is not reported, and
                   `any` for one that may be
     separate      replaces parts of it if each case has a process
@@ -181,8 +181,7 @@ class Promises:
         self.expect(f"{title}: verdict ({got.reason})", got.verdict, expected["verdict"])
         reason = expected.get("reason", "")
         self.expect(f"{title}: `{reason}` in {got.reason!r}", reason in got.reason, True)
-        if expected.get("left", 0) is not None:
-            self.expect(f"{title}: processes left", left, expected.get("left", 0))
+        self.expect(f"{title}: processes left", left, expected.get("left", 0))
         for stream in ("stdout", "stderr"):
             text = expected.get(stream, "")
             self.expect(f"{title}: `{text}` in {stream}", text in got.output[stream], True)

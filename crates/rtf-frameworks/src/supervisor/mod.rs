@@ -279,10 +279,11 @@ impl TestRun<'_> {
         // The process that is forked ahead is in the group of the server.
         let is_ahead = |orphan: i32| group_of(orphan).is_some_and(|it| Some(it) == server_group);
         let was_killed = |orphan: i32| group_of(orphan).is_some_and(|it| Some(it) == killed_group);
+        let belongs = |orphan| !is_ahead(orphan) && !was_killed(orphan);
+        tree::await_ending(belongs);
         let deadline = Instant::now() + SWEEP_LIMIT;
         let mut left = Vec::new();
         loop {
-            let belongs = |orphan| !is_ahead(orphan) && !was_killed(orphan);
             tree::add_new(&mut left, tree::sweep_if(Effort::Once, belongs));
             if tree::orphans().all(is_ahead) || Instant::now() >= deadline {
                 return left;

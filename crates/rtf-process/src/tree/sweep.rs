@@ -7,8 +7,9 @@ use std::time::{Duration, Instant};
 use rtf_model::LeakedProcess;
 
 use super::{
-    OWN_TASKS, SIGCONT, SIGKILL, STARTS, children_of, descendants, describe, has_known_environ,
-    is_exiting, is_fork_server, is_own_child, is_stopped, is_zombie, unix,
+    OWN_TASKS, POLL_INTERVAL, SIGCONT, SIGKILL, STARTS, children_of, descendants, describe,
+    has_known_environ, is_exiting, is_fork_server, is_own_child, is_stopped, is_zombie, state_of,
+    unix,
 };
 
 const SIGSTOP: i32 = 19;
@@ -17,6 +18,9 @@ const SWEEP_LIMIT: Duration = Duration::from_millis(500);
 /// How long a sweep waits for exiting orphans, whose children are not orphans yet. The kernel
 /// needs long for a process with much memory.
 const EXIT_LIMIT: Duration = Duration::from_secs(5);
+/// How long an orphan sleeps that is not about to end, and how long others may take.
+const IDLE_LIMIT: Duration = Duration::from_millis(100);
+const ENDING_LIMIT: Duration = Duration::from_secs(2);
 /// The time between passes that found nothing.
 const PASS_INTERVAL: Duration = Duration::from_micros(200);
 /// The number of passes over a tree that grows while it is being stopped.
@@ -44,6 +48,31 @@ impl Effort {
 /// The orphans that this process has adopted, alive or not.
 pub fn orphans() -> impl Iterator<Item = i32> {
     children_of(OWN_TASKS).into_iter().filter(|pid| !is_own_child(*pid))
+}
+
+/// Waits for the orphans that belong to something and are about to end: the helpers of a library
+/// notice the end of their program. Others sleep.
+pub fn await_ending(belongs: impl Fn(i32) -> bool) {
+    let start = Instant::now();
+    let mut last_activity = start;
+    loop {
+        let mut left = orphans().filter(|pid| belongs(*pid)).peekable();
+        if left.peek().is_none() {
+            return;
+        }
+        let now = Instant::now();
+        for pid in left {
+            match state_of(pid) {
+                Some('Z') => unix::reap(pid),
+                Some('S' | 'I' | 'T' | 't') => {}
+                _ => last_activity = now,
+            }
+        }
+        if now - last_activity >= IDLE_LIMIT || now - start >= ENDING_LIMIT {
+            return;
+        }
+        std::thread::sleep(POLL_INTERVAL);
+    }
 }
 
 /// Kills the adopted orphans that belong to something, and everything below them. Returns the
