@@ -42,7 +42,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tools")]
 
 from observed import TestResult, observe  # noqa: E402
-from run import Run  # noqa: E402
+from run import Run, is_a  # noqa: E402
 
 Table = dict[str, Any]
 POLL_SECS = 0.02
@@ -162,6 +162,9 @@ class Promises:
         try:
             while not (directory / "runs").exists() and run.process.poll() is None:
                 time.sleep(POLL_SECS)
+            case = self.cases.get("second")
+            if case and self.verdicts(title, mode)["second"]:
+                run.wait_for(lambda event: is_a(event, "case-started") and event["name"] == case)
             if promise["when"] == "collapse":
                 (directory / "collapse").touch()
             else:
@@ -171,13 +174,22 @@ class Promises:
         events = list(run.events())
         self.compare(title, mode, observe(events).get(title, TestResult()), left_of(events, title))
 
-    def compare(self, title: str, mode: str, got: TestResult, left: int) -> None:
-        """Compares a result with the table."""
+    def expected(self, title: str, mode: str) -> Table:
+        """What the table expects of a test."""
         name = title.removesuffix(f" ({mode})")
         promise = self.promises[name]
-        expected: Table = {**promise["expected"], **self.exception(name)}
-        if mode != "process":
-            expected |= promise.get("separate", {})
+        separate = promise.get("separate", {}) if mode != "process" else {}
+        return {**promise["expected"], **self.exception(name), **separate}
+
+    def verdicts(self, title: str, mode: str) -> dict[str, str | None]:
+        """The verdicts that the table expects of the cases."""
+        verdicts: dict[str, str | None] = dict.fromkeys(self.cases, "passed")
+        verdicts |= self.expected(title, mode).get("cases", {})
+        return verdicts
+
+    def compare(self, title: str, mode: str, got: TestResult, left: int) -> None:
+        """Compares a result with the table."""
+        expected = self.expected(title, mode)
         self.expect(f"{title}: verdict ({got.reason})", got.verdict, expected["verdict"])
         reason = expected.get("reason", "")
         self.expect(f"{title}: `{reason}` in {got.reason!r}", reason in got.reason, True)
@@ -185,7 +197,7 @@ class Promises:
         for stream in ("stdout", "stderr"):
             text = expected.get(stream, "")
             self.expect(f"{title}: `{text}` in {stream}", text in got.output[stream], True)
-        verdicts = dict.fromkeys(self.cases, "passed") | expected.get("cases", {})
+        verdicts = self.verdicts(title, mode)
         wanted = {self.cases[case]: verdicts[case] for case in self.cases if verdicts[case]}
         found = {case.path: case.verdict for case in got.by_id.values() if case.parent is None}
         for case in {case for case, verdict in wanted.items() if verdict == "any"}:
