@@ -13,6 +13,7 @@ mod episodes;
 mod faults;
 mod findings;
 mod hooks;
+mod left_processes;
 mod limits;
 mod parallel;
 mod preparation;
