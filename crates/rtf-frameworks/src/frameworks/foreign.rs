@@ -85,6 +85,7 @@ pub fn read_report(
     }
     let is_good = feed(&mut *reader, written, &mut reporter);
     reporter.end_open(&CaseResult::new(Outcome::Crashed, "it crashed"));
+    reporter.end_process();
     Some(is_good)
 }
 
