@@ -21,6 +21,8 @@ and a type
     file, param   of its tests
     modes         `process`: one process for all cases; `case`: the same with isolation="case";
                   `always`: each case has a process
+    fixture       an element that each suite has
+    parallel      how many tests run at once, by default 3
     cases         the names of the cases, by default the same
     except        for each promise that it cannot keep: replaces parts of `expected`, or `refused`
                   is a part of what `rtf check` prints
@@ -130,9 +132,10 @@ class Promises:
         directory.mkdir()
         variables = {"MARK": "a b", "PROMISE_DIR": str(directory)}
         lines = [f"<env name='{key}' value='{value}'/>" for key, value in variables.items()]
-        text = "\n".join([*lines, fixture, *tests.values()])
+        text = "\n".join([*lines, self.type.get("fixture", ""), fixture, *tests.values()])
+        parallel = self.type.get("parallel", 3)
         (directory / "suite.xml").write_text(
-            f"<suite name='promises' parallel='3'>\n{text}\n</suite>\n"
+            f"<suite name='promises' parallel='{parallel}'>\n{text}\n</suite>\n"
         )
         return directory
 

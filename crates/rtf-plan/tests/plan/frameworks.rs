@@ -237,13 +237,13 @@ fn attributes_of_other_types_are_errors() {
     not-of-this-type: `isolation=\"case\"` needs a list of cases, which a test of type `tap` does not have
       4:39 case
       hint: if the program can select tests, use `param`
-    without-effect: `case-timeout` limits only announced subtests of type `tap`
-      4:59 1s
-      hint: `timeout` limits the whole test
     invalid-value: `cases` is empty
       5:27
     not-of-this-type: `case-timeout` cannot limit the cases of a test of type `program`
       6:36 1s
+      hint: `timeout` limits the whole test
+    without-effect: `case-timeout` limits only announced subtests of type `tap`
+      4:59 1s
       hint: `timeout` limits the whole test
     ");
 }
