@@ -15,6 +15,7 @@ mod frameworks;
 mod host;
 mod last_output;
 mod listing;
+mod own_child;
 mod preload;
 mod supervisor;
 mod utf8_pieces;

@@ -9,10 +9,11 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 use rtf_model::protocol::SESSION_VARIABLE;
-use rtf_model::{INTERPRETER_BYTES, Interpreter};
+use rtf_process::tree;
 use rustix::process::{Pid, Signal, kill_process_group};
 
 use crate::framework::ListError;
+use crate::own_child;
 
 /// The longest part of the output that an error quotes.
 const QUOTED_BYTES: usize = 2000;
@@ -48,14 +49,17 @@ pub fn run(mut command: Command, limit: Duration) -> Result<Listed, ListError> {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     command.process_group(0).env_remove(SESSION_VARIABLE);
     let program = command.get_program().to_string_lossy().into_owned();
-    rtf_host::reset_signals(&mut command);
-    let started = command.spawn();
+    let started = own_child::spawn(&mut command);
     let mut child =
         started.map_err(|error| ListError::new(not_started(command.get_program(), &error)))?;
     let pid = Pid::from_child(&child);
     let (stdout, stderr) = (read(child.stdout.take()), read(child.stderr.take()));
     let (sender, ended) = channel();
-    std::thread::spawn(move || sender.send(child.wait()));
+    std::thread::spawn(move || {
+        let status = child.wait();
+        tree::remove_own_child(child.id().cast_signed());
+        sender.send(status)
+    });
     let status = match ended.recv_timeout(limit) {
         Ok(status) => status,
         Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => {

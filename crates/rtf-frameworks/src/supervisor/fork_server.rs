@@ -23,7 +23,7 @@ use rustix::net::{
 };
 use rustix::process::{Pid, Signal, WaitOptions, kill_process, waitpid};
 
-use crate::{elf, preload};
+use crate::{elf, own_child, preload};
 
 const LIBRARY: &str = "librtf-fork-server.so";
 
@@ -99,9 +99,7 @@ impl ForkServer {
         command.env(BIND_VARIABLE, "1");
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
         command.process_group(0);
-        let pid_of =
-            |child: &io::Result<Child>| child.as_ref().ok().map(|it| it.id().cast_signed());
-        let process = tree::start_own_child(|| command.spawn(), pid_of).ok()?;
+        let process = own_child::spawn(&mut command).ok()?;
         Some(Self { socket, process, session, report })
     }
 
