@@ -51,11 +51,25 @@ pub(super) fn resolve(
     let mut resolved = Vec::new();
     for input in inputs {
         match resolve_path(input, options) {
-            Ok(more) => more.into_iter().for_each(|input| add(&mut resolved, input)),
+            Ok(more) => more.into_iter().for_each(|input| match unusable(&input) {
+                Some(problem) => problems.push(problem),
+                None => add(&mut resolved, input),
+            }),
             Err(problem) => problems.push(*problem),
         }
     }
     resolved
+}
+
+/// Reports a suite whose path cannot be in a journal. That of a plug-in is checked where it is
+/// planned.
+fn unusable(input: &ResolvedInput) -> Option<Diagnostic> {
+    let ResolvedInput::Suite { file, .. } = input else { return None };
+    if file.path.to_str().is_some() {
+        return None;
+    }
+    let message = format!("the suite `{}` cannot be used: its path is not UTF-8", file.name);
+    Some(Diagnostic::error("path-encoding", message).hint("rename the file or its directory"))
 }
 
 /// Adds an input; merges selected tests of the same suite.

@@ -52,7 +52,7 @@ impl TestsRequest {
         let mut runner = RunnerEnvironment::from_current_process().map_err(Failure::internal)?;
         let results = &args.results.results;
         let mut manifest = if args.select.rerun.is_empty() {
-            manifest(args)
+            manifest(args)?
         } else {
             let (manifest, working_dir) = rerun_manifest(args, results)?;
             runner.current_dir = working_dir;
@@ -130,9 +130,9 @@ impl TestsRequest {
     }
 }
 
-fn manifest(args: &InputArgs) -> Manifest {
-    Manifest {
-        inputs: args.inputs.iter().map(|path| path.to_string_lossy().into_owned()).collect(),
+fn manifest(args: &InputArgs) -> Result<Manifest, Failure> {
+    Ok(Manifest {
+        inputs: args.inputs.iter().map(|path| utf8(path)).collect::<Result<_, _>>()?,
         recursive: args.recursive,
         param: args.param.clone(),
         environment: args.environment.clone(),
@@ -140,7 +140,15 @@ fn manifest(args: &InputArgs) -> Manifest {
         profile: args.profile.profile.clone(),
         set: settings(&args.profile),
         ..Manifest::default()
-    }
+    })
+}
+
+/// Other paths cannot be in a journal.
+fn utf8(path: &Path) -> Result<String, Failure> {
+    path.to_str().map(str::to_owned).ok_or_else(|| {
+        let error = format!("`{}` cannot be used: its path is not UTF-8", path.display());
+        Failure::input(error).hint("rename the file or its directory")
+    })
 }
 
 fn settings(args: &ProfileArgs) -> Vec<String> {
