@@ -95,7 +95,9 @@ for library in librtf-fork-server.so librtf-cppunit.so; do
 done
 # The Lua SDK is part of rtf-host-lua.
 put_tree sdk/python/rtf share/rtf/python/rtf '*.py' py.typed
-put 644 sdk/python/robottestingframework.py share/rtf/python/robottestingframework.py
+for module in robottestingframework rtf_start; do
+  put 644 "sdk/python/$module.py" "share/rtf/python/$module.py"
+done
 put_tree sdk/ruby/lib share/rtf/ruby/lib '*.rb'
 put_tree fixtures share/rtf/fixtures '*.py' '*.json'
 put 644 spec/suite.xsd share/rtf/spec/suite.xsd

@@ -28,7 +28,7 @@ class Host:
         environment.pop("PYTHONUNBUFFERED", None)
         environment["RTF_CHANNEL"] = f"fd:{theirs.fileno()}"
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "rtf.host"],
+            [sys.executable, "-m", "rtf_start", "rtf.host"],
             cwd=directory,
             env=environment,
             pass_fds=[theirs.fileno()],

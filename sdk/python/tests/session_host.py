@@ -15,8 +15,9 @@ from driver import LIMIT_SECONDS, PACKAGE
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-PYTEST = ("-m", "pytest", "-p", "no:cacheprovider", "-p", "rtf.frameworks.pytest_plugin")
-UNITTEST = ("-m", "rtf.frameworks.unittest_runner")
+PYTEST_OPTIONS = ("-p", "no:cacheprovider", "-p", "rtf.frameworks.pytest_plugin")
+PYTEST = ("-m", "rtf_start", "pytest", *PYTEST_OPTIONS)
+UNITTEST = ("-m", "rtf_start", "rtf.frameworks.unittest_runner")
 
 VALUES = [{"name": "simulator.port", "value": 40123}]
 

@@ -47,10 +47,13 @@ struct Problem {
     location: Option<Location>,
 }
 
+/// Runs a module although the working directory may have one named `rtf`.
+const START: &str = "rtf_start";
+
 /// The user's interpreter with a module.
 pub(super) fn interpreter(module: &str) -> Command {
     let mut command = Command::new(interpreter_name());
-    command.args(["-m", module]);
+    command.args(["-m", START, module]);
     command
 }
 

@@ -56,6 +56,14 @@ pub(super) enum HostStart {
 }
 
 impl HostKind {
+    /// The SDK that its tests can import.
+    pub fn sdk(&self) -> Option<&'static Sdk> {
+        match &self.start {
+            HostStart::Shipped { sdk, .. } => *sdk,
+            HostStart::Interpreter { sdk, .. } => Some(sdk),
+        }
+    }
+
     /// Finds the host for processes in `scope`.
     pub fn locate(&self, scope: &SearchScope<'_>) -> Result<HostPlan, Box<Diagnostic>> {
         match &self.start {

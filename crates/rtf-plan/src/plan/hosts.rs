@@ -55,7 +55,7 @@ pub(super) static HOSTS: [HostKind; 4] = [
         start: HostStart::Interpreter {
             program: "python3",
             variable: "RTF_PYTHON",
-            arguments: &["-m", "rtf.host"],
+            arguments: &["-m", "rtf_start", "rtf.host"],
             sdk: &PYTHON_SDK,
             forks: true,
         },

@@ -191,6 +191,12 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
         if env.is_empty() {
             self.hosts.insert(kind.name, located.clone());
         }
+        // Several types have the same SDK.
+        if let Some(hidden) = kind.sdk().and_then(|sdk| sdk.hidden_module(&self.scope))
+            && !self.context.problems.contains(&hidden)
+        {
+            self.context.problems.push(hidden);
+        }
         located
     }
 

@@ -16,6 +16,8 @@ pub(super) struct Sdk {
     marker: &'static str,
     /// The interpreter's variable for module directories.
     variable: &'static str,
+    /// Files of a user in the suite's directory that would have the name of the module.
+    module_files: &'static [&'static str],
 }
 
 /// The Python SDK, with the host of Python plug-ins.
@@ -24,6 +26,7 @@ pub(super) static PYTHON_SDK: Sdk = Sdk {
     source: "sdk/python",
     marker: "rtf/host",
     variable: "PYTHONPATH",
+    module_files: &["rtf.py", "rtf/__init__.py"],
 };
 
 /// The Ruby SDK, with the host of Ruby plug-ins.
@@ -32,6 +35,8 @@ pub(super) static RUBY_SDK: Sdk = Sdk {
     source: "sdk/ruby/lib",
     marker: "rtf/host.rb",
     variable: "RUBYLIB",
+    // Ruby does not search the working directory.
+    module_files: &[],
 };
 
 impl Sdk {
@@ -46,5 +51,22 @@ impl Sdk {
             value.push_str(user);
         }
         Ok(vec![(self.variable.to_owned(), value)])
+    }
+
+    /// Warns of a module in the suite's directory that tests cannot import: the host imports the
+    /// SDK, which has the same name.
+    pub fn hidden_module(&self, scope: &SearchScope<'_>) -> Option<Diagnostic> {
+        let sdk = scope.runner.shipped(&[self.installed], self.source, self.marker);
+        let is_sdk =
+            || sdk.and_then(|sdk| sdk.canonicalize().ok()) == scope.dir.canonicalize().ok();
+        let mut files = self.module_files.iter().map(|file| scope.dir.join(file));
+        let file = files.find(|file| file.is_file()).filter(|_| !is_sdk())?;
+        let (module, _) = self.marker.split_once('/')?;
+        let message = format!(
+            "tests cannot import `{}`: the module `{module}` is that of rtf",
+            file.display()
+        );
+        let hint = "give your module another name, or put the suite into another directory";
+        Some(Diagnostic::warning("hidden-module", message).hint(hint))
     }
 }

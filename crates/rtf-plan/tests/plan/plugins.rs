@@ -129,7 +129,7 @@ fn the_users_python_is_found() {
     let path = format!("{}:{}", bench.path("venv/bin"), bench.path("bin"));
     bench.set("PATH", &path);
     let (command, env) = host(&bench, "s.xml");
-    assert_eq!(command, [venv.to_str().unwrap(), "-m", "rtf.host"]);
+    assert_eq!(command, [venv.to_str().unwrap(), "-m", "rtf_start", "rtf.host"]);
     // Without our module, the interpreter may have an installed one.
     assert!(env.is_empty());
     // In a source tree; then installed, which comes first.

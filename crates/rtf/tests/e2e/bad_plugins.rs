@@ -198,13 +198,13 @@ fn an_interpreter_that_was_named_and_is_not_there() {
 #[test]
 fn an_interpreter_that_is_none() {
     assert_snapshot!(without_python("RTF_PYTHON", Path::new("/bin/false")), @"
-    error: the host `/bin/false -m rtf.host` does not work: exit code 1
+    error: the host `/bin/false -m rtf_start rtf.host` does not work: exit code 1
      --> arm.xml:2:9
       |
     2 |   <test>encoder.py</test>
       |         ^^^^^^^^^^ needed here
       |
-      = help: `/bin/false -m rtf.host --check` must exit with code 0
+      = help: `/bin/false -m rtf_start rtf.host --check` must exit with code 0
 
     1 error; nothing was started
     ");

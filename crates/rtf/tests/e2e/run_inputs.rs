@@ -167,3 +167,39 @@ fn the_rest_is_skipped_when_a_critical_test_does_not_pass() {
     let verdicts: Vec<_> = record.tests.iter().map(|test| test.final_verdict()).collect();
     assert_eq!(verdicts, [Verdict::Passed, Verdict::Failed, Verdict::Skipped, Verdict::Passed]);
 }
+
+/// The interpreter searches the working directory first, where the host would find it.
+#[test]
+fn a_module_named_rtf_beside_the_tests_does_not_replace_the_hosts() {
+    for module in ["rtf.py", "rtf/__init__.py"] {
+        let folder = Folder::new();
+        let test = "import unittest\nclass Case(unittest.TestCase):\n    def test(self): pass\n";
+        let tests = "<test param='x y'>told.py</test><test type='unittest'>test_case.py</test>";
+        folder.file(module, "raise RuntimeError('the module of the user')\n");
+        folder.file("told.py", PYTHON).file("test_case.py", test);
+        folder.file("s.xml", &format!("<suite>{tests}</suite>"));
+        let finished = folder.rtf(&["run", "s.xml"]);
+        assert_eq!(finished.code, Some(0), "{}{}", finished.stdout, finished.stderr);
+        let warning =
+            format!("tests cannot import `[FOLDER]/{module}`: the module `rtf` is that of rtf");
+        let shown = folder.shown(&folder.rtf(&["check", "s.xml"]));
+        assert_eq!(shown.matches(&warning).count(), 1, "{shown}");
+    }
+}
+
+#[test]
+fn a_suite_whose_name_is_not_utf_8_is_refused() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = Folder::new();
+    folder.file("T.lua", PASSES);
+    let name = std::ffi::OsStr::from_bytes(b"arm-\xff.xml");
+    std::fs::write(folder.path().join(name), "<suite><test>T.lua</test></suite>").expect("a file");
+    for input in [name, std::ffi::OsStr::new(".")] {
+        let mut command = folder.command(&["run"]);
+        let output = command.arg(input).output().expect("rtf runs");
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        let reason = "cannot be used: its path is not UTF-8";
+        assert!(told.contains(reason) && told.contains("arm-\u{fffd}.xml"), "{told}");
+    }
+}
