@@ -50,7 +50,7 @@ impl ResolveError {
 }
 
 /// Finds the journal of a run: `latest`, the name of a run in `results`, the
-/// path of a run's directory, or the path of a journal.
+/// path of a run's directory or of a journal, or a results directory, for its newest run.
 ///
 /// # Errors
 /// There is none; the error says where it was looked for and what there is.
@@ -58,10 +58,9 @@ pub fn resolve(results: &Path, run: &str) -> Result<PathBuf, ResolveError> {
     let mut looked = Vec::new();
     let mut candidates = vec![results.join(run), PathBuf::from(run)];
     if run == LATEST {
-        // The link may lead to a run that was deleted, or be missing where
-        // there are no links.
-        let newest = names(results).into_iter().next_back();
-        candidates.insert(1, results.join(newest.unwrap_or_default()));
+        candidates.insert(1, newest(results));
+    } else if Path::new(run).is_dir() {
+        candidates.extend([Path::new(run).join(LATEST), newest(Path::new(run))]);
     }
     for candidate in candidates {
         if candidate.is_file() {
@@ -80,6 +79,12 @@ pub fn resolve(results: &Path, run: &str) -> Result<PathBuf, ResolveError> {
         return Err(ResolveError::Empty { results: results.to_owned() });
     }
     Err(ResolveError::Unknown { run: run.to_owned(), looked, newest })
+}
+
+/// The newest run by its name: the link may lead to a run that was deleted, or be missing where
+/// there are no links.
+fn newest(results: &Path) -> PathBuf {
+    results.join(names(results).into_iter().next_back().unwrap_or_default())
 }
 
 /// The runs in the results directory, the oldest first.
@@ -113,6 +118,17 @@ mod tests {
         assert_eq!(found(results.path(), Path::new("2026-01-01T00-00-00Z-0001")), journal);
         assert_eq!(found(elsewhere, journal.parent().unwrap()), journal);
         assert_eq!(found(elsewhere, &journal), journal);
+    }
+
+    #[test]
+    fn a_results_directory_stands_for_its_newest_run() {
+        let results = tempfile::tempdir().unwrap();
+        let dir = results.path().to_str().unwrap();
+        let elsewhere = Path::new("elsewhere");
+        assert!(resolve(elsewhere, dir).is_err());
+        run(results.path(), "2026-01-01T00-00-00Z-0001");
+        let newest = run(results.path(), "2026-01-02T00-00-00Z-0001");
+        assert_eq!(resolve(elsewhere, dir).unwrap(), newest);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use super::{ReportFormat, ResultsArgs};
 /// Options of `rtf show`.
 #[derive(Debug, Args)]
 pub struct ShowArgs {
-    /// `latest`, or a run by name, directory or journal
+    /// `latest`, a run by name, directory or journal, or a results directory for its newest run
     #[arg(default_value = "latest", value_name = "RUN")]
     pub run: String,
 
@@ -37,7 +37,7 @@ pub struct ShowArgs {
 /// Options of `rtf report`.
 #[derive(Debug, Args)]
 pub struct ReportArgs {
-    /// `latest`, or a run by name, directory or journal
+    /// `latest`, a run by name, directory or journal, or a results directory for its newest run
     #[arg(default_value = "latest", value_name = "RUN")]
     pub run: String,
 

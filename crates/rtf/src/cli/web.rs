@@ -51,6 +51,10 @@ impl WebRunArgs {
 /// Options of `rtf serve`.
 #[derive(Debug, Args)]
 pub struct ServeArgs {
+    /// Results directory, or the directory of a run in it [default: that of `--results`]
+    #[arg(value_name = "DIR")]
+    pub dir: Option<PathBuf>,
+
     #[command(flatten)]
     pub results: ResultsArgs,
 

@@ -70,3 +70,13 @@ fn a_link_leads_to_the_run() {
     ");
     assert!(folder.read("P.lua").contains("TestCase"));
 }
+
+#[test]
+fn a_results_directory_stands_for_its_newest_run() {
+    let folder = folder();
+    assert_eq!(folder.rtf(&["run", "--results", "out", "F.lua"]).code, Some(1));
+    assert_eq!(folder.rtf(&["run", "--results", "out", "P.lua"]).code, Some(0));
+    let shown = folder.rtf(&["show", "out"]);
+    assert_eq!(shown.code, Some(0), "{}{}", shown.stdout, shown.stderr);
+    assert!(shown.stdout.contains("P"), "{}", shown.stdout);
+}

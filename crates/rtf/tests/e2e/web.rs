@@ -254,3 +254,16 @@ fn serve_follows_a_run_that_goes_on_and_tells_of_one_that_was_killed() {
     assert_eq!(get(web.address, "/api/v1/runs/current").status, 404);
     assert_eq!(web.end("TERM").code, Some(143));
 }
+
+#[test]
+fn serve_takes_a_results_directory_or_a_run_in_it() {
+    let folder = Folder::new();
+    folder.file("quick.lua", QUICK);
+    assert_eq!(folder.rtf(&["run", "--results", "out", "quick.lua"]).code, Some(0));
+    for dir in ["out", "out/latest"] {
+        let web = Web::start(&folder, &["serve", dir, "--web", "127.0.0.1:0"]);
+        let runs = get(web.address, "/api/v1/runs").json();
+        assert_eq!(runs["runs"].as_array().map(Vec::len), Some(1), "{runs}");
+        assert_eq!(web.end("TERM").code, Some(143));
+    }
+}

@@ -2,11 +2,13 @@
 
 mod reruns;
 
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::ArgMatches;
 use rtf_engine::signal::SignalListener;
+use rtf_report::run_dir::JOURNAL;
 use rtf_web::{Capabilities, ShutdownHandle};
 
 use self::reruns::Reruns;
@@ -20,6 +22,9 @@ use crate::{exit, history, terminal, web};
 /// Serves runs.
 pub fn run(mut args: ServeArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_history(&mut args.results, &mut args.history, matches)?;
+    if let Some(dir) = args.dir {
+        args.results.results = results_of(dir);
+    }
     let results = &args.results.results;
     if !results.is_dir() {
         let error = format!("there is no results directory `{}`", results.display());
@@ -46,6 +51,16 @@ pub fn run(mut args: ServeArgs, matches: &ArgMatches) -> VerbResult {
     server.wait().map_err(Failure::internal)?;
     // Only this thread ends the server.
     Ok(ExitCode::from(signals_thread.join().unwrap_or(exit::BROKEN)))
+}
+
+/// The results directory that a user names, also by one of its runs.
+fn results_of(dir: PathBuf) -> PathBuf {
+    if !dir.join(JOURNAL).is_file() {
+        return dir;
+    }
+    // `latest` is a link.
+    let run = dir.canonicalize().ok();
+    run.and_then(|run| run.parent().map(Path::to_path_buf)).unwrap_or(dir)
 }
 
 /// Waits for a signal, ends the active rerun and then the server, and returns the exit
