@@ -151,6 +151,7 @@ robots_and_frameworks() {
   step_with 'proxies ros1' ros1 proxies_of ros
   step_with 'proxies yarp' yarp proxies_of yarp
   step_with 'example 06' ros2 example_06
+  step_with 'discovery ros2' ros2 discovery_ros2
   step 'example 07' example_07
   step 'example 08' example_08
   step 'example 10' example_10

@@ -36,6 +36,7 @@ lint_python() {
   "$checkers/mypy" fixtures
   "$checkers/mypy" tests/fixtures/*.py tests/fixtures/ros2launch/*.py \
     tests/fixtures/orocos/*.py tests/fixtures/yarp/*.py
+  "$checkers/mypy" tests/fixtures/discovery/*.py
   "$checkers/mypy" tests/fixtures/clock/*.py tests/fixtures/replay/*.py
   "$checkers/mypy" tests/fixtures/signals/*.py tests/fixtures/proxies/*.py
   "$checkers/mypy" packaging/*.py

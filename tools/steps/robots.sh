@@ -89,6 +89,10 @@ example_06() {
   python3 tools/check_example_06.py "$TARGET/release/rtf" examples/06-ros2/{left,right}.xml
 }
 
+discovery_ros2() {
+  python3 tools/check_discovery.py "$TARGET/release/rtf" tests/fixtures/discovery
+}
+
 example_07() {
   PATH="$simulation:$PATH" python3 tools/check_example_07.py "$TARGET/release/rtf" \
     examples/07-levels

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use rtf_model::{SuitePort, SuiteVariable};
 
+use super::discovery;
 use rtf_plan::plan::{FixtureBody, FixturePlan, OwnMiddleware, SuitePlan};
 
 const ROS_MASTER: &str = "ros-master";
@@ -12,6 +13,14 @@ const GAZEBO_MASTER: &str = "gazebo-master";
 /// The ports of every suite with isolated middleware.
 pub const PORTS: [&str; 2] = [ROS_MASTER, GAZEBO_MASTER];
 
+/// The variables for ROS 2: those of a suite that shares all other middleware.
+const DOMAIN: &str = "ROS_DOMAIN_ID";
+const RANGE: &str = "ROS_AUTOMATIC_DISCOVERY_RANGE";
+const FORMER_RANGE: &str = "ROS_LOCALHOST_ONLY";
+const ROS2: [&str; 3] = [DOMAIN, RANGE, FORMER_RANGE];
+/// The releases of ROS 2 without `RANGE`. Later ones warn about `FORMER_RANGE`.
+const FORMER_RANGE_RELEASES: [&str; 3] = ["foxy", "galactic", "humble"];
+
 /// The values of the variables.
 #[derive(Clone, Copy, Debug)]
 pub struct MiddlewareIds<'a> {
@@ -19,9 +28,60 @@ pub struct MiddlewareIds<'a> {
     /// The run's directory.
     pub run_dir: &'a Path,
     /// The leased ROS 2 domain.
-    pub domain: u16,
+    pub domain: Option<u16>,
     /// The suite's ports.
     pub ports: &'a [SuitePort],
+}
+
+/// Whether the suite uses a ROS 2 domain that it or the user's environment selects.
+pub fn has_domain(plan: &SuitePlan, user: impl Fn(&str) -> Option<String>) -> bool {
+    let keep = plan.isolate.middleware != OwnMiddleware::Always;
+    is_written(plan, DOMAIN) || keep && user(DOMAIN).is_some_and(|value| !value.is_empty())
+}
+
+/// Whether the user's environment is that of one of these releases of ROS 2.
+fn is_release(releases: &[&str], user: impl Fn(&str) -> Option<String>) -> bool {
+    user("ROS_DISTRO").is_some_and(|release| releases.contains(&release.as_str()))
+}
+
+fn is_written(plan: &SuitePlan, name: &str) -> bool {
+    plan.env.iter().any(|(known, _)| known == name)
+}
+
+/// Returns the variables of a test with a separate domain. `user` is the environment in which
+/// the run was started.
+pub fn of_test(
+    domain: u16,
+    run_dir: &Path,
+    user: impl Fn(&str) -> Option<String>,
+) -> Vec<SuiteVariable> {
+    let (range, value) = range(&user);
+    let ids = [(DOMAIN, domain.to_string()), (range, value)];
+    let ids = ids.map(|(name, value)| private(name, value));
+    ids.into_iter().chain(profile(run_dir, user)).collect()
+}
+
+fn private(name: &str, value: String) -> SuiteVariable {
+    SuiteVariable { name: name.to_owned(), value, inherited: false }
+}
+
+/// The variable that limits discovery to this machine.
+fn range(user: impl Fn(&str) -> Option<String>) -> (&'static str, String) {
+    if is_release(&FORMER_RANGE_RELEASES, user) {
+        (FORMER_RANGE, "1".to_owned())
+    } else {
+        (RANGE, "LOCALHOST".to_owned())
+    }
+}
+
+/// The variables that name the profile of Fast DDS.
+fn profile(run_dir: &Path, user: impl Fn(&str) -> Option<String>) -> Vec<SuiteVariable> {
+    let Some(file) = discovery::write_profile(run_dir, &user) else { return Vec::new() };
+    let is_former = is_release(&discovery::FORMER_RELEASES, &user);
+    let former = is_former || user(discovery::FORMER_VARIABLE).is_some();
+    let names = [(discovery::VARIABLE, true), (discovery::FORMER_VARIABLE, former)];
+    let names = names.into_iter().filter(|(_, is_set)| *is_set);
+    names.map(|(name, _)| private(name, file.to_string_lossy().into_owned())).collect()
 }
 
 impl MiddlewareIds<'_> {
@@ -32,23 +92,25 @@ impl MiddlewareIds<'_> {
         plan: &SuitePlan,
         user: impl Fn(&str) -> Option<String>,
     ) -> Vec<SuiteVariable> {
-        let keep = plan.isolate.middleware == OwnMiddleware::UnlessSet;
-        let written = |name: &str| plan.env.iter().any(|(known, _)| known == name);
-        let user = |name: &str| user(name).filter(|value| keep && !value.is_empty());
-        let own_domain = user("ROS_DOMAIN_ID").is_none() && !written("ROS_DOMAIN_ID");
+        let keep = plan.isolate.middleware != OwnMiddleware::Always;
+        let is_ros2_only = plan.isolate.middleware == OwnMiddleware::Ros2UnlessSet;
+        let kept = |name: &str| user(name).filter(|value| keep && !value.is_empty());
         let is_remote = |fixture: &FixturePlan| match &fixture.body {
             FixtureBody::Process(process) => process.remote.is_some(),
             FixtureBody::Plugin(_) | FixtureBody::Attached(_) => false,
         };
         let is_here = !plan.fixtures.iter().any(is_remote);
-        let local_domain = own_domain && is_here;
-        let own_master = user("ROS_MASTER_URI").is_none() && !written("ROS_MASTER_URI");
+        let local_domain = !has_domain(plan, &user) && is_here;
+        let own_master = kept("ROS_MASTER_URI").is_none() && !is_written(plan, "ROS_MASTER_URI");
         let local_master = own_master && is_here;
         let mut variables = Vec::new();
-        for (name, value) in self.all(plan) {
+        for (name, value) in self.all(plan, &user) {
+            if is_written(plan, name) || (is_ros2_only && !ROS2.contains(&name)) {
+                continue;
+            }
             // The user's domain may span machines, and needs the user's range.
-            let spans_machines = name == "ROS_AUTOMATIC_DISCOVERY_RANGE" && !local_domain;
-            if written(name) || (spans_machines && user(name).is_none()) {
+            let spans_machines = [RANGE, FORMER_RANGE].contains(&name) && !local_domain;
+            if spans_machines && kept(name).is_none() {
                 continue;
             }
             // The user's host name belongs to the user's master.
@@ -60,29 +122,40 @@ impl MiddlewareIds<'_> {
             if name == "ROS_LOG_DIR" && !is_here {
                 continue;
             }
-            let name = name.to_owned();
-            variables.push(match user(&name).filter(|_| !of_master) {
-                Some(value) => SuiteVariable { name, value, inherited: true },
-                None => SuiteVariable { name, value, inherited: false },
+            variables.push(match kept(name).filter(|_| !of_master) {
+                Some(value) => SuiteVariable { name: name.to_owned(), value, inherited: true },
+                None => private(name, value),
             });
+        }
+        if local_domain {
+            let profile = profile(self.run_dir, &user).into_iter();
+            let profile = profile.filter(|variable| !is_written(plan, &variable.name));
+            variables.extend(profile);
         }
         variables
     }
 
-    fn all(&self, plan: &SuitePlan) -> [(&'static str, String); 9] {
+    fn all(
+        &self,
+        plan: &SuitePlan,
+        user: impl Fn(&str) -> Option<String>,
+    ) -> Vec<(&'static str, String)> {
         let partition = format!("rtf-{}-{}", self.run, plan.id);
-        [
-            ("ROS_DOMAIN_ID", self.domain.to_string()),
-            ("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST".to_owned()),
+        let mut all = vec![
+            range(user),
             ("ROS_MASTER_URI", self.address(ROS_MASTER)),
             // With an address instead of this name roscpp listens everywhere.
             ("ROS_HOSTNAME", "localhost".to_owned()),
             ("ROS_LOG_DIR", self.logs(plan)),
-            ("YARP_NAMESPACE", format!("/rtf{}", self.domain)),
             ("GZ_PARTITION", partition.clone()),
             ("IGN_PARTITION", partition),
             ("GAZEBO_MASTER_URI", self.address(GAZEBO_MASTER)),
-        ]
+        ];
+        if let Some(domain) = self.domain {
+            all.insert(0, (DOMAIN, domain.to_string()));
+            all.insert(5, ("YARP_NAMESPACE", format!("/rtf{domain}")));
+        }
+        all
     }
 
     /// The directory for logs of nodes, named like the suite's other logs: `logs/arm.ros`.

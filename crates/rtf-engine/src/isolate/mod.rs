@@ -2,10 +2,12 @@
 //! See `spec/suite.md`, "Isolation", and the rationale in `docs/decisions/0009-isolation.md`.
 //!
 //! - [`PreparedSuite`]: all resources of one suite, until its end.
+//! - `discovery`: with which interval ROS 2 nodes announce themselves.
 //! - `lease`: numbers that are exclusive on this machine.
 //! - `middleware`: the environment variables.
 //! - `port_substitution`: completes the texts of a plan.
 
+mod discovery;
 mod lease;
 mod middleware;
 mod port_substitution;
@@ -51,6 +53,8 @@ pub struct PreparedSuite<'p> {
     network: Option<HeldNetwork>,
     leases: Vec<Lease>,
     locks: Vec<Lock>,
+    /// The variables for tests with separate domains, as many as can run at once.
+    test_domains: Vec<Vec<(String, String)>>,
 }
 
 impl<'p> PreparedSuite<'p> {
@@ -64,7 +68,8 @@ impl<'p> PreparedSuite<'p> {
         spawner: &Spawner,
     ) -> Self {
         let (plan, leases, network) = (Cow::Borrowed(plan), Vec::new(), None);
-        let mut prepared = Self { plan, network, leases, locks: Vec::new() };
+        let (locks_taken, test_domains) = (Vec::new(), Vec::new());
+        let mut prepared = Self { plan, network, leases, locks: locks_taken, test_domains };
         match locks {
             Ok(locks) => prepared.locks = locks,
             Err(held) => {
@@ -90,29 +95,31 @@ impl<'p> PreparedSuite<'p> {
         spawner: &Spawner,
     ) -> Result<Option<SuitePrepared>, PreparationError> {
         let isolate = &plan.isolate;
-        let own = isolate.middleware != OwnMiddleware::No;
-        if !own && !isolate.network && isolate.ports.is_empty() {
+        let user = |name: &str| std::env::var(name).ok();
+        let (is_private, needs_domain) = match isolate.middleware {
+            OwnMiddleware::No => (false, false),
+            OwnMiddleware::Ros2UnlessSet => (false, !middleware::has_domain(plan, user)),
+            OwnMiddleware::UnlessSet | OwnMiddleware::Always => (true, true),
+        };
+        let seed = format!("{run}.{}", plan.id);
+        self.lease_test_domains(plan, &seed, run_dir)?;
+        if !needs_domain && !isolate.network && isolate.ports.is_empty() {
             return Ok(None);
         }
-        let seed = format!("{run}.{}", plan.id);
-        let mut ports = Vec::new();
-        let always = middleware::PORTS.iter().copied().filter(|_| own);
-        for name in always.chain(isolate.ports.iter().map(String::as_str)) {
-            if ports.iter().all(|known: &SuitePort| known.name != name) {
-                let lease = lease::port(&seed)?;
-                let port = lease.number();
-                ports.push(SuitePort { name: name.to_owned(), port });
-                self.leases.push(lease);
-            }
-        }
-        ports.sort_by(|a, b| a.name.cmp(&b.name));
+        let always = middleware::PORTS.iter().copied().filter(|_| is_private);
+        let names = always.chain(isolate.ports.iter().map(String::as_str));
+        let ports = self.lease_ports(names, &seed)?;
         let mut variables = Vec::new();
-        if own {
-            let domain = lease::domain(&seed)?;
-            let own =
-                middleware::MiddlewareIds { run, run_dir, domain: domain.number(), ports: &ports };
-            variables = own.variables(plan, |name| std::env::var(name).ok());
-            self.leases.push(domain);
+        if needs_domain {
+            let domain = match lease::domain(&seed) {
+                // Most of these suites do not speak ROS 2.
+                Err(LeaseError::NoneLeft { .. }) if !is_private => None,
+                domain => Some(domain?),
+            };
+            let number = domain.as_ref().map(Lease::number);
+            let ids = middleware::MiddlewareIds { run, run_dir, domain: number, ports: &ports };
+            variables = ids.variables(plan, user);
+            self.leases.extend(domain);
         }
         if isolate.network {
             self.network = Some(HeldNetwork::start(spawner).await?);
@@ -123,6 +130,49 @@ impl<'p> PreparedSuite<'p> {
             .map(|held| SuiteNetwork { pid: held.pid, user_namespace: held.has_user_namespace });
         let join_command = join_command(network, &ports, &variables);
         Ok(Some(SuitePrepared { suite: plan.id, network, ports, variables, join_command }))
+    }
+
+    /// Leases a domain for each of the tests with separate domains that can run at once.
+    fn lease_test_domains(
+        &mut self,
+        plan: &SuitePlan,
+        seed: &str,
+        run_dir: &Path,
+    ) -> Result<(), LeaseError> {
+        let tests = plan.tests.iter().filter(|test| test.settings.own_domain);
+        for _ in tests.take(plan.settings.parallel as usize) {
+            let domain = lease::domain(seed)?;
+            let user = |name: &str| std::env::var(name).ok();
+            let variables = middleware::of_test(domain.number(), run_dir, user);
+            let variables = variables.into_iter().map(|variable| (variable.name, variable.value));
+            self.test_domains.push(variables.collect());
+            self.leases.push(domain);
+        }
+        Ok(())
+    }
+
+    /// Returns the variables for tests with separate domains.
+    pub fn test_domains(&self) -> Vec<Vec<(String, String)>> {
+        self.test_domains.clone()
+    }
+
+    /// Leases a port for each name, sorted by name.
+    fn lease_ports<'n>(
+        &mut self,
+        names: impl Iterator<Item = &'n str>,
+        seed: &str,
+    ) -> Result<Vec<SuitePort>, LeaseError> {
+        let mut ports = Vec::new();
+        for name in names {
+            if ports.iter().all(|known: &SuitePort| known.name != name) {
+                let lease = lease::port(seed)?;
+                let port = lease.number();
+                ports.push(SuitePort { name: name.to_owned(), port });
+                self.leases.push(lease);
+            }
+        }
+        ports.sort_by(|a, b| a.name.cmp(&b.name));
+        Ok(ports)
     }
 
     /// Returns the network of its processes.

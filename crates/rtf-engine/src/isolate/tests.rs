@@ -27,13 +27,15 @@ fn variables(
     let mut plan = suite(1, 1);
     plan.isolate.middleware = middleware;
     plan.env = Arc::new(written.iter().map(|(n, v)| (n.to_string(), v.to_string())).collect());
-    let ports = ports();
-    let own = MiddlewareIds { run: "RUN", run_dir: Path::new("/run"), domain: 42, ports: &ports };
+    let (ports, run_dir) = (ports(), tempfile::tempdir().expect("a directory"));
+    let run_dir = run_dir.path();
+    let own = MiddlewareIds { run: "RUN", run_dir, domain: Some(42), ports: &ports };
     let of_user = |name: &str| {
         user.iter().find(|(known, _)| *known == name).map(|(_, value)| (*value).to_owned())
     };
     let shown = |own: SuiteVariable| {
-        format!("{}={}{}", own.name, own.value, if own.inherited { " kept" } else { "" })
+        let value = own.value.replace(&*run_dir.to_string_lossy(), "/run");
+        format!("{}={value}{}", own.name, if own.inherited { " kept" } else { "" })
     };
     own.variables(&plan, of_user).into_iter().map(shown).collect()
 }
@@ -46,7 +48,8 @@ fn a_fixture_on_another_machine_is_found_by_ros_2() {
     let FixtureBody::Process(process) = &mut plan.fixtures[1].body else { panic!("a process") };
     let remote = RemotePlan { host: "pi@robot".to_owned(), ssh: vec!["ssh".to_owned()] };
     Arc::make_mut(process).remote = Some(remote);
-    let own = MiddlewareIds { run: "RUN", run_dir: Path::new("/run"), domain: 42, ports: &ports() };
+    let own =
+        MiddlewareIds { run: "RUN", run_dir: Path::new("/run"), domain: Some(42), ports: &ports() };
     let names: Vec<_> = own.variables(&plan, |_| None).into_iter().map(|own| own.name).collect();
     assert_eq!(names.len(), 6);
     assert!(!names.contains(&"ROS_AUTOMATIC_DISCOVERY_RANGE".to_owned()));
@@ -54,7 +57,7 @@ fn a_fixture_on_another_machine_is_found_by_ros_2() {
     assert!(!names.contains(&"ROS_LOG_DIR".to_owned()));
 }
 
-const ALL: [&str; 9] = [
+const ALL: [&str; 10] = [
     "ROS_DOMAIN_ID=42",
     "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST",
     "ROS_MASTER_URI=http://127.0.0.1:20002",
@@ -64,6 +67,7 @@ const ALL: [&str; 9] = [
     "GZ_PARTITION=rtf-RUN-0",
     "IGN_PARTITION=rtf-RUN-0",
     "GAZEBO_MASTER_URI=http://127.0.0.1:20001",
+    "FASTDDS_DEFAULT_PROFILES_FILE=/run/fastdds.xml",
 ];
 
 #[test]
@@ -92,6 +96,33 @@ fn what_the_user_set_is_kept_unless_the_suite_wants_its_own() {
     ];
     assert_eq!(kept, expected);
     assert_eq!(variables(OwnMiddleware::Always, &[], &user), ALL);
+}
+
+#[test]
+fn a_suite_that_starts_no_middleware_has_only_a_domain_of_ros_2() {
+    let only = OwnMiddleware::Ros2UnlessSet;
+    assert_eq!(variables(only, &[], &[]), [ALL[0], ALL[1], ALL[9]]);
+    let user = [("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET"), ("YARP_NAMESPACE", "/lab")];
+    let kept = "ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET kept";
+    assert_eq!(variables(only, &[], &user), [ALL[0], kept, ALL[9]]);
+}
+
+/// Later releases warn about the former names.
+#[test]
+fn releases_of_ros_2_get_the_variables_that_they_know() {
+    let release = |name| variables(OwnMiddleware::Ros2UnlessSet, &[], &[("ROS_DISTRO", name)]);
+    let former = "FASTRTPS_DEFAULT_PROFILES_FILE=/run/fastdds.xml";
+    assert_eq!(release("humble"), [ALL[0], "ROS_LOCALHOST_ONLY=1", ALL[9], former]);
+    assert_eq!(release("jazzy"), [ALL[0], ALL[1], ALL[9], former]);
+    assert_eq!(release("kilted"), [ALL[0], ALL[1], ALL[9]]);
+}
+
+#[test]
+fn a_profile_of_the_suite_is_left_to_it() {
+    let written = [("FASTDDS_DEFAULT_PROFILES_FILE", "mine.xml")];
+    let left = variables(OwnMiddleware::Ros2UnlessSet, &written, &[("ROS_DISTRO", "humble")]);
+    let former = "FASTRTPS_DEFAULT_PROFILES_FILE=/run/fastdds.xml";
+    assert_eq!(left, [ALL[0], "ROS_LOCALHOST_ONLY=1", former]);
 }
 
 /// By the name of a robot's network the nodes of a master on this machine would

@@ -20,7 +20,10 @@ use super::{
     TestSettings, clock, faults, fixture, hook, middleware, signals,
 };
 use crate::config;
-use crate::suite::{DeclaredMiddleware, DeclaredSuite, DeclaredTest, FixtureKind, SourceText};
+use crate::suite::{
+    ClockSource, DeclaredMiddleware, DeclaredSourceKind, DeclaredSuite, DeclaredTest, FixtureKind,
+    SignalMiddleware, SourceText,
+};
 
 /// The name of the suite of the plug-ins that are given directly.
 const DIRECT_PLUGINS: &str = "plug-ins";
@@ -112,8 +115,9 @@ fn isolation(suite: &DeclaredSuite) -> Isolation {
     let network = suite.isolate.network;
     // A fixture outside of the suite cannot know the ids of private middleware. A
     // user's plug-in may start middleware or use an existing one: as in 2.x, its
-    // suite shares middleware.
-    let (mut starts, mut is_outside) = (false, false);
+    // suite shares a running master or name server. ROS 2 has no such server, and
+    // each test may start nodes.
+    let (mut starts, mut is_outside) = (false, reads_running_robot(suite));
     for fixture in &suite.fixtures {
         match &fixture.body {
             FixtureKind::Attached(_) => is_outside = true,
@@ -127,10 +131,21 @@ fn isolation(suite: &DeclaredSuite) -> Isolation {
         Some(DeclaredMiddleware::Shared) => OwnMiddleware::No,
         // A private network cannot reach shared middleware.
         None if network => OwnMiddleware::Always,
-        None if starts && !is_outside => OwnMiddleware::UnlessSet,
-        None => OwnMiddleware::No,
+        None if is_outside => OwnMiddleware::No,
+        None if starts => OwnMiddleware::UnlessSet,
+        None => OwnMiddleware::Ros2UnlessSet,
     };
     Isolation { network, middleware, ports: suite.isolate.ports.clone() }
+}
+
+/// Whether the suite waits for messages of ROS 2, and has no fixture that could send them.
+fn reads_running_robot(suite: &DeclaredSuite) -> bool {
+    let has_topics = suite.signals.iter().any(|source| {
+        let ros2 = SignalMiddleware::Ros2;
+        matches!(&source.kind, DeclaredSourceKind::Topic { middleware, .. } if *middleware == ros2)
+    });
+    let has_clock = suite.clock.as_ref().is_some_and(|clock| clock.source == ClockSource::Ros2);
+    suite.fixtures.is_empty() && (has_topics || has_clock)
 }
 
 fn stem(path: &Path) -> String {

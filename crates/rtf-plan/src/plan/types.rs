@@ -10,6 +10,7 @@ use rtf_model::{
 };
 use serde::{Deserialize, Serialize};
 
+use super::hosts::SIGNALS;
 use super::{CaseSelection, ProbePlans, ProcessPlan};
 pub use crate::suite::{
     AfterCollapse, Leaks, LearnPlan, LearnedSides, RequiredResource, Retries, SuiteSettings,
@@ -119,8 +120,11 @@ pub struct Isolation {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OwnMiddleware {
     /// It shares existing middleware.
-    #[default]
     No,
+    /// It gets a private ROS 2 domain, unless the user's environment selects one. It shares
+    /// other middleware.
+    #[default]
+    Ros2UnlessSet,
     /// It gets private middleware unless the user's environment selects one.
     UnlessSet,
     /// It gets private middleware, regardless of the user's environment.
@@ -169,6 +173,13 @@ pub struct FixturePlan {
 }
 
 impl FixturePlan {
+    /// Whether it is the fixture that evaluates monitors: it measures what it has judged itself.
+    #[must_use]
+    pub fn evaluates_monitors(&self) -> bool {
+        let is_signals = |plugin: &PluginPlan| &*plugin.plugin_type == SIGNALS.name;
+        matches!(&self.body, FixtureBody::Plugin(plugin) if is_signals(plugin))
+    }
+
     /// Checks whether a value is neither stored nor shown. An undeclared value is not secret.
     #[must_use]
     pub fn is_secret(&self, value: &str) -> bool {

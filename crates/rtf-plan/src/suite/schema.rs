@@ -88,6 +88,7 @@ pub(super) const TEST: ElementSchema = ElementSchema {
         "critical",
         "exclusive",
         "isolation",
+        "middleware",
         "fork",
         "expect",
         "issue",

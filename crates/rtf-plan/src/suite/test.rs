@@ -44,11 +44,14 @@ pub(super) fn read(
     let has_cases = node.attributes().any(|attribute| CASE_ATTRIBUTES.contains(&attribute.name()));
     let cases =
         if has_cases { CaseAttributes::read(reader, node) } else { CaseAttributes::default() };
+    let own_domain = reader.choice(node, "middleware", &[("own", true)]).unwrap_or(false);
     let settings = TestSettings {
         repetitions: reader.number(node, "repetition", 1).unwrap_or(1),
         critical: reader.boolean(node, "critical").unwrap_or(false),
         exclusive: reader.boolean(node, "exclusive").unwrap_or(false),
-        shared: cases.shared,
+        // The variables of a process cannot change.
+        shared: cases.shared && !own_domain,
+        own_domain,
         ..inherited_settings(reader, node, defaults.settings)
     };
     let limits = DeclaredLimits { case: cases.timeout, ..limits };

@@ -272,6 +272,8 @@ pub struct TestSettings {
     pub exclusive: bool,
     /// Whether it may share a host with other tests.
     pub shared: bool,
+    /// Whether it has a private ROS 2 domain, which is not that of the suite.
+    pub own_domain: bool,
 }
 
 impl Default for TestSettings {
@@ -284,6 +286,7 @@ impl Default for TestSettings {
             critical: false,
             exclusive: false,
             shared: false,
+            own_domain: false,
         }
     }
 }

@@ -9,7 +9,8 @@ fn bench() -> Bench {
     let bench = Bench::new();
     bench.file("cell/A.lua", "");
     bench.file("cell/F.lua", "");
-    for shipped in ["roscore.py", "rosbag.py", "rtf_fixtures/__init__.py"] {
+    bench.file("share/rtf/fixtures/rtf_fixtures/ros2_signals.py", "");
+    for shipped in ["roscore.py", "rosbag.py", "clock.py", "rtf_fixtures/__init__.py"] {
         bench.file(&format!("share/rtf/fixtures/{shipped}"), "");
     }
     bench.program("cell/sim", "exit 0");
@@ -26,18 +27,24 @@ fn isolation(attributes: &str, inside: &str) -> Isolation {
 
 #[test]
 fn which_suites_get_private_middleware() {
-    use OwnMiddleware::{Always, No, UnlessSet};
+    use OwnMiddleware::{Always, No, Ros2UnlessSet, UnlessSet};
     let plugin = "<fixture>F.lua</fixture>";
     let local = "<fixture type='process' name='l'><command>sh</command></fixture>";
+    let signal = "<signal name='x' ros2='/odom.twist.twist.linear.x'/>";
     let attached = "<fixture type='process' attach='true' name='a'><ready file='x'/></fixture>";
     let remote = "<fixture type='process' host='a@b' name='r'><command>sim</command></fixture>";
     for (attributes, inside, expected) in [
-        ("", "", No),
-        ("", plugin, No),
+        ("", "", Ros2UnlessSet),
+        ("", plugin, Ros2UnlessSet),
+        // Messages that no process of the suite can send.
+        ("", signal, No),
+        ("clock='ros2'", "", No),
+        ("", &format!("{plugin}{signal}"), Ros2UnlessSet),
+        ("clock='ros2'", plugin, Ros2UnlessSet),
         ("", local, UnlessSet),
         ("", &format!("{plugin}{local}"), UnlessSet),
         ("", "<fixture>roscore</fixture>", UnlessSet),
-        ("", "<fixture>rosbag</fixture>", No),
+        ("", "<fixture>rosbag</fixture>", Ros2UnlessSet),
         ("", &format!("<fixture>roscore</fixture>{attached}"), No),
         ("middleware='own'", plugin, Always),
         ("", attached, No),
@@ -53,6 +60,13 @@ fn which_suites_get_private_middleware() {
         assert_eq!(isolation.middleware, expected, "{attributes} {inside}");
         assert_eq!(isolation.network, attributes.contains("network"));
     }
+}
+
+/// Each of them may start nodes of ROS 2.
+#[test]
+fn plugins_without_a_suite_get_a_private_domain() {
+    let plan = bench().plan(&["A.lua"]);
+    assert_eq!(plan.suites[0].isolate.middleware, OwnMiddleware::Ros2UnlessSet);
 }
 
 /// Planning reserves nothing: `rtf check` needs no port.

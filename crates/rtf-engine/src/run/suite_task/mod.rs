@@ -68,6 +68,8 @@ pub async fn run_suite(
         substitutes: Vec::new(),
         prelaunched: Vec::new(),
         triggered: None,
+        free_domains: prepared.test_domains(),
+        used_domains: HashMap::new(),
         scopes: 0,
         is_repeated: requests.soak_until.is_some() || plan.repeats(),
         deadlines: Deadlines::default(),
@@ -101,6 +103,10 @@ struct SuiteTask<'a> {
     prelaunched: Vec<Launch>,
     /// The start of the next hook, whose scope is not known yet.
     triggered: Option<HookStart>,
+    /// The variables of domains for single tests that no test uses.
+    free_domains: Vec<Vec<(String, String)>>,
+    /// Those that processes of tests use.
+    used_domains: HashMap<HostId, Vec<(String, String)>>,
     /// Whether tests are repeated: then the resource usage of fixtures and shared hosts is
     /// measured.
     is_repeated: bool,
@@ -188,6 +194,7 @@ impl SuiteTask<'_> {
             Exited(..) | SpawnFailed(_) | NotStarted(_) => {
                 self.commands.remove(&host);
                 self.deadlines.forget(host, now, self.plan);
+                self.free_domains.extend(self.used_domains.remove(&host));
             }
             Throttled => {
                 if let Some((source, _)) = self.commands.get(&host) {

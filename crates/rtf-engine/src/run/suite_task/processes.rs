@@ -22,7 +22,8 @@ use rtf_process::task::{AttachedJob, ProcessJob, run_process, watch_attached};
 const SIGTERM: i32 = 15;
 
 impl SuiteTask<'_> {
-    pub(super) fn spawn(&mut self, host: HostId, source: Source, start: StartRequest) {
+    pub(super) fn spawn(&mut self, host: HostId, source: Source, mut start: StartRequest) {
+        start.env.extend(self.take_domain(host, source));
         let (mut process, mut attached) = (None, None);
         match &start.what {
             Program::Host(_) | Program::Command(_) => {}
@@ -58,6 +59,20 @@ impl SuiteTask<'_> {
         };
         let tasks = self.context.tasks.clone();
         tokio::spawn(run_process(job, tasks, queue, self.inputs.clone()));
+    }
+
+    /// Returns the variables of a domain for a test that has its own, until its process has ended.
+    fn take_domain(&mut self, host: HostId, source: Source) -> Vec<(String, String)> {
+        let Source::Test(test) = source else { return Vec::new() };
+        let needs_domain = |plan: &&TestPlan| plan.settings.own_domain;
+        let Some(written) = self.test(test).filter(needs_domain).map(|plan| plan.env.clone())
+        else {
+            return Vec::new();
+        };
+        let Some(domain) = self.free_domains.pop() else { return Vec::new() };
+        self.used_domains.insert(host, domain.clone());
+        let is_free = |name: &str| written.iter().all(|(known, _)| known != name);
+        domain.into_iter().filter(|(name, _)| is_free(name)).collect()
     }
 
     pub(super) fn test(&self, test: TestId) -> Option<&TestPlan> {

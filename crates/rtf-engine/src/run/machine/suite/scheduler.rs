@@ -301,6 +301,8 @@ impl<'p> Scheduler<'p> {
         let others = self.suite.tests[self.next..].iter().chain(next_round);
         let others = others.filter(|plan| soak.includes(plan.id));
         let all = begun.chain(others.map(|plan| (plan, plan.settings.repetitions)));
+        // Its domain may be in use until its test starts.
+        let all = all.filter(|(plan, _)| !plan.settings.own_domain);
         let next = all
             .flat_map(|(plan, times)| std::iter::repeat_n(plan, HOSTS_AHEAD.min(times as usize)));
         next.take(HOSTS_AHEAD).map(|plan| host_start(self.suite, plan, values)).collect()
