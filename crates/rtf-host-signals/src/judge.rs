@@ -55,9 +55,11 @@ impl RunningMonitor {
                 _ => {}
             }
         }
-        // A measurement that is not finite would be a failure.
         if let Some(robustness) = outcome.robustness.filter(|value| value.is_finite()) {
-            report.robustness(robustness);
+            let is_reported = self.has_reported || !was_stopped;
+            // A violation whose robustness is 0 is outside no limit.
+            let is_judged = outcome.verdict != Verdict::Violated || is_reported && robustness < 0.0;
+            report.robustness(robustness, is_judged);
         }
     }
 }
@@ -178,12 +180,13 @@ impl MonitorReport<'_> {
         self.test.session.message(message);
     }
 
-    fn robustness(&self, robustness: f64) {
-        self.test.session.measure(Measurement {
+    /// Reports the robustness; it must not be negative, unless the test was not judged.
+    fn robustness(&self, robustness: f64, is_judged: bool) {
+        self.test.session.report_judged(Measurement {
             name: format!("monitor/{}", self.monitor.name),
             value: Some(robustness),
             unit: String::new(),
-            low: None,
+            low: is_judged.then_some(0.0),
             high: None,
             learned: false,
             location: self.monitor.location.clone(),

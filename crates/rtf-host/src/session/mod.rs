@@ -161,6 +161,13 @@ impl Session {
         is_within
     }
 
+    /// Sends a measurement whose value is judged otherwise: outside its limits, it is no failure
+    /// of the plug-in.
+    pub fn report_judged(&self, mut measurement: Measurement) {
+        measurement.case = self.0.cases.current();
+        self.notify(&Notification::Measured(measurement));
+    }
+
     /// Takes a sample and returns whether it is within its limits; outside them it
     /// is a failure. It is sent in a batch: at the latest before the next other message,
     /// before a wait, and before the answer.

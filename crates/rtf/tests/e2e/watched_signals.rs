@@ -73,6 +73,14 @@ fn a_monitor_fails_a_test_that_would_pass() {
     let high = attempt(&journal, 1);
     let failure = high.failures().next().expect("a failure");
     assert!(failure.text.starts_with("monitor `low`: `q < 1rad` does not hold at "));
+    // The negative robustness of the violation is outside its limit, and no problem of the fixture.
+    let within = |test| {
+        let mut all = attempt(&journal, test).measurements.iter();
+        let robustness = all.find(|it| it.name == "monitor/low").expect("its robustness");
+        (robustness.low, robustness.is_within_limits())
+    };
+    assert_eq!([within(0), within(1)], [(Some(0.0), true), (Some(0.0), false)]);
+    assert!(journal.record.fixtures.iter().all(|fixture| fixture.problems.is_empty()));
     assert!(failure.text.contains("q = 1.3 rad (robustness -0.3); its formula is `always(q"));
     assert_eq!(failure.location.as_ref().unwrap().to_string(), "s.xml:3");
     assert_eq!(journal.record.tests[1].reason(), Some(&*failure.text));
