@@ -72,6 +72,7 @@ fn before() -> Vec<EventKind> {
             tags: vec!["quick".into()],
             timed: false,
             plugin_hash: None,
+            source_hash: None,
             was: None,
             expected: None,
             parameters: Vec::new(),

@@ -101,6 +101,7 @@ fn planned(run: u32, tests: u32) -> Vec<EventKind> {
             plugin_type: "dll".to_owned(),
             plugin: String::new(),
             plugin_hash: None,
+            source_hash: None,
             repetitions: 1,
             timed: false,
             tags: Vec::new(),

@@ -90,6 +90,7 @@ fn before() -> Vec<EventKind> {
             timed: false,
             tags: Vec::new(),
             plugin_hash: None,
+            source_hash: None,
             was: None,
             expected: None,
             parameters: Vec::new(),

@@ -68,7 +68,7 @@ impl HistoryNumbers {
         let recent = RunSelection { last: Some(RECENT), ..RunSelection::default() };
         Ok(Self {
             runs: store.runs(&RunSelection::default())?,
-            flaky: store.flaky(&recent, &|test| test.identity.case.is_empty())?.len(),
+            flaky: store.flaky(&recent, &|test| test.identity.case.is_empty())?.tests.len(),
             tests: store.identities()?.iter().filter(|test| test.case.is_empty()).count(),
         })
     }

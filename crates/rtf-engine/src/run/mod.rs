@@ -9,8 +9,8 @@ mod control_queue;
 mod deadlines;
 mod fail_limit;
 pub mod machine;
-mod plugin_hash;
 mod probes;
+mod sources;
 mod suite_queue;
 mod suite_task;
 
@@ -29,7 +29,7 @@ use tokio::sync::watch;
 use context::RunContext;
 pub use context::{DebugMode, DebugOptions};
 use fail_limit::FailLimit;
-use plugin_hash::PluginHashes;
+use sources::SourceHashes;
 use suite_queue::SuiteQueue;
 use suite_task::SuiteRequests;
 
@@ -234,10 +234,10 @@ fn emit_planned(suite: &SuitePlan, timed: bool, events: &Events) {
         let (hook, suite, name, on) = (hook.id, suite.id, hook.name.clone(), hook.on.clone());
         events.emit(EventKind::HookPlanned(HookPlanned { hook, suite, name, on }));
     }
-    let mut hashes = PluginHashes::default();
+    let mut hashes = SourceHashes::of_suite(suite);
     for test in &suite.tests {
-        let plugin_hash = hashes.of(&test.plugin.file);
-        let planned = TestPlanned { plugin_hash, ..planned(suite, test, timed) };
+        let (plugin_hash, source_hash) = (hashes.of_plugin(&test.plugin), hashes.of_test(test));
+        let planned = TestPlanned { plugin_hash, source_hash, ..planned(suite, test, timed) };
         events.emit(EventKind::TestPlanned(planned));
     }
 }
@@ -258,6 +258,7 @@ fn planned(suite: &SuitePlan, test: &TestPlan, timed: bool) -> TestPlanned {
         plugin_type: test.plugin.plugin_type.to_string(),
         plugin: shown(&test.plugin.file),
         plugin_hash: None,
+        source_hash: None,
         repetitions: test.settings.repetitions,
         timed,
         tags: test.tags.clone(),

@@ -39,6 +39,9 @@ pub struct SeriesChange {
     /// The commit of the last run before the change.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub commit_before: Option<String>,
+    /// Whether the sources of the test, as far as they are known, differ between these two runs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sources_changed: Option<bool>,
     /// The numbers before and after the change.
     #[serde(flatten)]
     pub change: ChangePoint,
@@ -94,16 +97,15 @@ impl<'a> ChangeSearch<'a> {
     }
 
     fn add_changes(&self, columns: &TestColumns, changes: &mut Vec<SeriesChange>) {
-        let identity = &columns.test.attributes.identity;
         let durations = self.groups(columns, columns.results.iter().filter_map(passed_duration));
-        self.search(identity, (None, Options::default()), durations, changes);
+        self.search(columns, (None, Options::default()), durations, changes);
         for (name, series) in &columns.series {
             let [low, high] = series.limits;
             let limits_span = high.zip(low).map(|(high, low)| high - low);
             let options = Options { limits_span, ..Options::default() };
             let values = series.points.iter().filter_map(|it| Some((it.run(), it.value()?)));
             let groups = self.groups(columns, values);
-            self.search(identity, (Some(name), options), groups, changes);
+            self.search(columns, (Some(name), options), groups, changes);
         }
     }
 
@@ -143,7 +145,7 @@ impl<'a> ChangeSearch<'a> {
 
     fn search(
         &self,
-        identity: &TestIdentity,
+        columns: &TestColumns,
         (series, options): (Option<&SeriesName>, Options),
         groups: Groups<'_>,
         changes: &mut Vec<SeriesChange>,
@@ -151,11 +153,12 @@ impl<'a> ChangeSearch<'a> {
         for (GroupKey { robot, profile }, numbers) in groups {
             let values: Vec<f64> = numbers.iter().map(|(_, value)| *value).collect();
             for change in find_change_points(&values, &options).points {
-                let run_at = |index: usize| &self.scope.runs[numbers[index].0];
-                let run = run_at(change.index);
-                let before = change.index.checked_sub(1).map(run_at);
+                let position = |index: usize| numbers[index].0;
+                let first = position(change.index);
+                let last = change.index.checked_sub(1).map(position);
+                let run = &self.scope.runs[first];
                 changes.push(SeriesChange {
-                    identity: identity.clone(),
+                    identity: columns.test.attributes.identity.clone(),
                     series: series.cloned(),
                     robot: robot.to_owned(),
                     profile: profile.map(str::to_owned),
@@ -163,7 +166,10 @@ impl<'a> ChangeSearch<'a> {
                     run_name: run.name.clone(),
                     started: run.started,
                     commit: run.commit.clone(),
-                    commit_before: before.and_then(|run| run.commit.clone()),
+                    commit_before: last.and_then(|run| self.scope.runs[run].commit.clone()),
+                    sources_changed: last.and_then(|last| {
+                        Some(columns.source_in(last)? != columns.source_in(first)?)
+                    }),
                     change,
                 });
             }

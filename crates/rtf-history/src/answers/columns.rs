@@ -6,7 +6,7 @@ use rtf_model::Verdict;
 
 use super::scope::{RunScope, StoredTest};
 use crate::entry::SeriesName;
-use crate::store::{PackedPoint, PackedPoints, PackedResult, PackedResults};
+use crate::store::{PackedPoint, PackedResult, PackedResults};
 use crate::{Store, StoreError};
 
 /// A result of a test.
@@ -19,6 +19,8 @@ pub(super) struct ColumnResult {
     /// The position of the robot in [`Columns::robots`].
     pub robot: usize,
     pub duration_us: Option<i64>,
+    /// The hash of its sources.
+    pub source: Option<u64>,
 }
 
 /// A point of a series. Small, because there may be millions.
@@ -87,12 +89,22 @@ pub(super) struct TestColumns {
     pub series: BTreeMap<SeriesName, ColumnSeries>,
 }
 
+impl TestColumns {
+    /// The sources of the test in a run, if they are known.
+    pub fn source_in(&self, run: usize) -> Option<u64> {
+        let at = self.results.binary_search_by_key(&run, |result| result.run).ok()?;
+        self.results.get(at)?.source
+    }
+}
+
 /// Tests in the runs of a scope.
 #[derive(Debug)]
 pub(super) struct Columns {
     pub tests: Vec<TestColumns>,
     /// Exclusive resources of suites, separated by spaces.
     pub robots: Vec<String>,
+    /// For each run of the scope, whether the sources of any of its tests are known.
+    pub runs_with_sources: Vec<bool>,
 }
 
 /// Whether the points of series are needed.
@@ -115,11 +127,12 @@ impl Store {
         let rows = Rows::new(rows.collect());
         let start = |test| TestColumns { test, results: Vec::new(), series: BTreeMap::new() };
         let tests = tests.into_iter().map(start).collect();
-        let mut columns = Columns { tests, robots: Vec::new() };
+        let runs_with_sources = vec![false; scope.runs.len()];
+        let mut columns = Columns { tests, robots: Vec::new(), runs_with_sources };
         let Some(range) = scope.id_range() else { return Ok(columns) };
-        self.for_each_result_column(range, |run, blob| {
+        self.for_each_result_column(range, |run, results| {
             if let Some(run) = scope.position(run) {
-                columns.add_results(&rows, scope, run, PackedResults::new(blob));
+                columns.add_results(&rows, scope, run, results);
             }
         })?;
         columns.tests.iter_mut().for_each(|test| test.results.sort_by_key(|result| result.run));
@@ -148,10 +161,10 @@ impl Store {
         // Without a filter, a run with a point has a result.
         let on_robot = scope.has_robot().then(|| columns.runs_of_tests(scope.runs.len()));
         let Some(range) = scope.id_range() else { return Ok(series) };
-        self.for_each_point_column(range, |run, blob| {
+        self.for_each_point_column(range, |run, points| {
             let Some(run) = scope.position(run) else { return };
             let mut next = 0;
-            for PackedPoint { series: id, value, outside, limits } in PackedPoints::new(blob) {
+            for PackedPoint { series: id, value, outside, limits } in points {
                 let Some((test, _, series)) = rows.find(&mut next, id).map(|at| &mut series[at])
                 else {
                     continue;
@@ -178,11 +191,12 @@ impl Columns {
             .iter()
             .map(|robot| scope.matches_robot(robot).then(|| self.robot(robot)))
             .collect();
+        self.runs_with_sources[run] = !results.sources.is_empty();
         let mut next = 0;
-        for PackedResult { test, verdict, is_flaky, robot, duration_us } in results {
+        for PackedResult { test, verdict, is_flaky, robot, duration_us, source } in results {
             let Some(robot) = robots.get(robot).copied().flatten() else { continue };
             let Some(test) = rows.find(&mut next, test) else { continue };
-            let result = ColumnResult { run, verdict, is_flaky, robot, duration_us };
+            let result = ColumnResult { run, verdict, is_flaky, robot, duration_us, source };
             self.tests[test].results.push(result);
         }
     }

@@ -1,18 +1,18 @@
-//! Tests that both passed and failed on one commit, or in one run.
+//! Tests that both passed and failed on one commit, with equal sources, or in one run.
 
 use jiff::Timestamp;
 use rtf_model::Verdict;
 use serde::Serialize;
+use utoipa::ToSchema;
 
-use super::RunInfo;
 use super::columns::{ColumnResult, Depth, TestColumns};
 use super::scope::{RunScope, ScopedResult, StoredTest};
 use super::test_history::TestResult;
 use crate::statistics::{Attempt, Flips};
 use crate::{RunSelection, Store, StoreError, TestIdentity, TestSelection};
 
-/// A test that both passed and failed on one commit, or in one run.
-#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+/// A test that both passed and failed on one commit, with equal sources, or in one run.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct FlakyTest {
     /// The identity.
     #[serde(flatten)]
@@ -25,6 +25,26 @@ pub struct FlakyTest {
     pub last_problem: Option<TestResult>,
 }
 
+/// Flaky tests, and which runs were compared.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct FlakyTests {
+    /// The most flaky first.
+    pub tests: Vec<FlakyTest>,
+    /// The runs by what makes their results comparable.
+    pub compared: ComparedRuns,
+}
+
+/// Number of runs by what makes their results comparable with those of other runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, ToSchema)]
+pub struct ComparedRuns {
+    /// Their commit, without uncommitted changes; and their sources, if they are known.
+    pub by_commit: u64,
+    /// The sources of each test: the commit is not known, or there were uncommitted changes.
+    pub by_sources: u64,
+    /// Nothing: neither is known.
+    pub neither: u64,
+}
+
 impl Store {
     /// The flaky tests among the selected ones, those with the highest rate first.
     ///
@@ -34,15 +54,15 @@ impl Store {
         &self,
         runs: &RunSelection,
         tests: TestSelection<'_>,
-    ) -> Result<Vec<FlakyTest>, StoreError> {
+    ) -> Result<FlakyTests, StoreError> {
         let scope = self.run_scope(runs)?;
-        let keys = commit_keys(&scope);
         let mut tests = self.selected_tests(tests)?;
         Self::keep_tests(&mut tests, self.tests_with_problems()?);
         let columns = self.columns(tests, &scope, Depth::Results)?;
+        let keys = RunKeys::of_scope(&scope, &columns.runs_with_sources);
         let mut flaky = Vec::new();
         for TestColumns { test, results, .. } in &columns.tests {
-            let flips = count(&keys, results, &columns.robots);
+            let flips = keys.count(results, &columns.robots);
             if flips.is_flaky() {
                 let last_problem = self.last_problem(test, results, &scope)?;
                 let identity = test.attributes.identity.clone();
@@ -59,7 +79,7 @@ impl Store {
                 .then(time(b).cmp(&time(a)))
                 .then(a.identity.cmp(&b.identity))
         });
-        Ok(flaky)
+        Ok(FlakyTests { tests: flaky, compared: keys.compared })
     }
 
     /// The newest result that is a problem, or a pass after a retry.
@@ -80,34 +100,57 @@ impl Store {
     }
 }
 
-/// What the comparable results have in common, except the robot. Without a commit, or with
-/// uncommitted changes, only those of one run are comparable.
-fn commit_keys(scope: &RunScope) -> Vec<String> {
-    let key = |(index, run): (usize, &RunInfo)| match &run.commit {
-        Some(commit) if run.is_committed() => {
-            let profile = run.profile.as_deref().unwrap_or_default();
-            format!("{commit}\0{profile}\0{}", run.parameters.join("\0"))
-        }
-        _ => format!("run {index}"),
-    };
-    scope.runs.iter().enumerate().map(key).collect()
+/// What makes the results of runs comparable, apart from the robot.
+struct RunKeys {
+    /// For each run: its commit, or else the run itself.
+    commits: Vec<String>,
+    /// For each run: what its results with equal sources have in common.
+    settings: Vec<String>,
+    compared: ComparedRuns,
 }
 
-fn count(keys: &[String], results: &[ColumnResult], robots: &[String]) -> Flips {
-    let with_robot = |result: &ColumnResult| {
-        let key = keys.get(result.run)?;
-        Some(format!("{key}\0{}", robots.get(result.robot)?))
-    };
-    let keys: Vec<_> = results.iter().map(with_robot).collect();
-    let mut attempts = Vec::with_capacity(results.len());
-    for (result, key) in results.iter().zip(&keys) {
-        let commit = key.as_deref();
-        if result.is_flaky {
-            let is_passed = result.verdict == Verdict::Passed;
-            let verdict = if is_passed { Verdict::Failed } else { Verdict::Passed };
-            attempts.push(Attempt { commit, verdict });
+impl RunKeys {
+    fn of_scope(scope: &RunScope, has_sources: &[bool]) -> Self {
+        let (mut commits, mut settings) = (Vec::new(), Vec::new());
+        let mut compared = ComparedRuns::default();
+        for (index, (run, has_sources)) in scope.runs.iter().zip(has_sources).enumerate() {
+            let profile = run.profile.as_deref().unwrap_or_default();
+            let options = format!("{profile}\0{}", run.parameters.join("\0"));
+            let commit = run.compared_commit(*has_sources);
+            match (commit, has_sources) {
+                (Some(_), _) => compared.by_commit += 1,
+                (None, true) => compared.by_sources += 1,
+                (None, false) => compared.neither += 1,
+            }
+            commits.push(match commit {
+                Some(commit) => format!("{commit}\0{options}"),
+                None => format!("run {index}"),
+            });
+            settings.push(options);
         }
-        attempts.push(Attempt { commit, verdict: result.verdict });
+        Self { commits, settings, compared }
     }
-    Flips::count(&attempts)
+
+    fn count(&self, results: &[ColumnResult], robots: &[String]) -> Flips {
+        let keys_of = |result: &ColumnResult| {
+            let robot = robots.get(result.robot).map_or("", String::as_str);
+            let commit = format!("{}\0{robot}", self.commits.get(result.run)?);
+            let settings = self.settings.get(result.run)?;
+            let sources = result.source.map(|hash| format!("{hash:x}\0{settings}\0{robot}"));
+            Some((commit, sources))
+        };
+        let keys: Vec<_> = results.iter().map(keys_of).collect();
+        let mut attempts = Vec::with_capacity(results.len());
+        for (result, keys) in results.iter().zip(&keys) {
+            let commit = keys.as_ref().map(|(commit, _)| commit.as_str());
+            let sources = keys.as_ref().and_then(|(_, sources)| sources.as_deref());
+            if result.is_flaky {
+                let is_passed = result.verdict == Verdict::Passed;
+                let verdict = if is_passed { Verdict::Failed } else { Verdict::Passed };
+                attempts.push(Attempt { commit, sources, verdict });
+            }
+            attempts.push(Attempt { commit, sources, verdict: result.verdict });
+        }
+        Flips::count(&attempts)
+    }
 }

@@ -22,7 +22,7 @@ pub use campaigns::{CampaignChange, CampaignSeries, EpisodeLine, RatePoint, Rate
 pub use changes::SeriesChange;
 pub use compare::{Comparison, NumberChange, TestComparison, VerdictCounts};
 pub use export::{PointLine, ResultLine};
-pub use flaky::FlakyTest;
+pub use flaky::{ComparedRuns, FlakyTest, FlakyTests};
 pub use matrix::{MatrixRow, VerdictMatrix, letter};
 pub use recent::RecentResults;
 pub use run_info::{RunCounts, RunInfo};

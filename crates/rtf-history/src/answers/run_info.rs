@@ -64,10 +64,12 @@ pub struct RunInfo {
 }
 
 impl RunInfo {
-    /// Whether its sources are those of a commit, so that runs of the same commit are comparable.
+    /// Its commit, if the sources are those of the commit, so that runs of it are comparable.
+    /// Where Git did not answer, that is assumed only if the sources are not known otherwise.
     #[must_use]
-    pub fn is_committed(&self) -> bool {
-        self.commit.is_some() && self.dirty != Some(true)
+    pub fn compared_commit(&self, has_sources: bool) -> Option<&str> {
+        let commit = self.commit.as_deref();
+        commit.filter(|_| self.dirty.map_or(!has_sources, |is_dirty| !is_dirty))
     }
 }
 

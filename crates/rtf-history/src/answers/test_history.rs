@@ -49,6 +49,9 @@ pub struct TestResult {
     /// The hash of its plug-in.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plugin_hash: Option<String>,
+    /// The hash of its sources.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub source_hash: Option<String>,
 }
 
 impl TestResult {
@@ -68,6 +71,7 @@ impl TestResult {
             reason: row.reason.clone(),
             robot: row.robot.clone(),
             plugin_hash: row.plugin_hash.clone(),
+            source_hash: row.source_hash.clone(),
         }
     }
 }

@@ -39,6 +39,8 @@ pub struct ResultEntry {
     pub robot: String,
     /// The hash of its plug-in.
     pub plugin_hash: Option<String>,
+    /// The hash of its sources.
+    pub source_hash: Option<String>,
     /// Its measurements and signals.
     pub numbers: Vec<(SeriesName, NumberSummary)>,
 }
@@ -112,6 +114,7 @@ fn add_test(test: &TestRecord, identity: TestIdentity, robot: &str, to: &mut Vec
         reason: test.reason().map(str::to_owned),
         robot: robot.to_owned(),
         plugin_hash: test.plan.plugin_hash.clone(),
+        source_hash: test.plan.source_hash.clone(),
         numbers: numbers.remove("").map(NumberCollector::finish).unwrap_or_default(),
     };
     let cases = cases(test);

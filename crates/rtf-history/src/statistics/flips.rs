@@ -11,9 +11,11 @@ use rtf_statistics::{CONFIDENCE, Rate, rate};
 /// One judged attempt of a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Attempt<'a> {
-    /// The commit that was tested. `None` if it is unknown or there were uncommitted changes: such
-    /// attempts count in the rates, but are not compared.
+    /// The commit that was tested, or the run. `None` if it is unknown.
     pub commit: Option<&'a str>,
+    /// The sources of the test. `None` if they are unknown. An attempt without commit and sources
+    /// counts in the rates, but is not compared.
+    pub sources: Option<&'a str>,
     /// How the attempt was judged.
     pub verdict: Verdict,
 }
@@ -54,28 +56,37 @@ pub struct Flips {
     pub bench: u64,
     /// Attempts that were skipped or interrupted. They count nowhere else.
     pub without_outcome: u64,
-    /// Consecutive results of one commit or run, of which one passed and one failed.
+    /// Consecutive results of one commit, of one run or of equal sources, of which one passed and
+    /// one failed.
     pub flips: u64,
-    /// Consecutive results of one commit or run, equal or not.
+    /// Consecutive results of one commit, of one run or of equal sources, equal or not.
     pub pairs: u64,
+    /// Those of `pairs` that are comparable only because their sources are equal.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub pairs_by_sources: u64,
     /// `passed` of `passed + failed`. `None` without a result.
     pub pass_rate: Option<Rate>,
-    /// `flips` of `pairs`. `None` if no commit or run has two results.
+    /// `flips` of `pairs`. `None` if no two results are comparable.
     pub flip_rate: Option<Rate>,
     /// `bench` of `passed + failed + bench`. `None` without an attempt.
     pub bench_rate: Option<Rate>,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_zero(count: &u64) -> bool {
+    *count == 0
+}
+
 impl Flips {
     /// Counts the attempts of one test, which are in the order of their time.
     ///
-    /// A result is compared with the previous one of the same commit, also if other commits were
-    /// tested or the bench was wrong in between. Time: O(n).
+    /// A result is compared with the previous one of the same commit or with the same sources, also
+    /// if others were tested or the bench was wrong in between. Time: O(n).
     #[must_use]
     pub fn count(attempts: &[Attempt<'_>]) -> Self {
         let mut counts = Self::default();
-        let mut previous: HashMap<&str, Outcome> = HashMap::new();
-        for attempt in attempts {
+        let (mut of_commits, mut of_sources) = (HashMap::new(), HashMap::new());
+        for (position, attempt) in attempts.iter().enumerate() {
             let outcome = Outcome::of(attempt.verdict);
             match outcome {
                 Some(Outcome::Passed) => counts.passed += 1,
@@ -84,11 +95,17 @@ impl Flips {
                 None => counts.without_outcome += 1,
             }
             let result = outcome.filter(|outcome| *outcome != Outcome::Bench);
-            if let (Some(commit), Some(result)) = (attempt.commit, result)
-                && let Some(before) = previous.insert(commit, result)
+            let Some(result) = result else { continue };
+            let found = (position, result);
+            let of_commit = attempt.commit.and_then(|commit| of_commits.insert(commit, found));
+            let of_source = attempt.sources.and_then(|sources| of_sources.insert(sources, found));
+            if let Some((position, before)) =
+                [of_commit, of_source].into_iter().flatten().max_by_key(|it| it.0)
             {
                 counts.pairs += 1;
                 counts.flips += u64::from(before != result);
+                let is_by_commit = of_commit.is_some_and(|(other, _)| other == position);
+                counts.pairs_by_sources += u64::from(!is_by_commit);
             }
         }
         let results = counts.passed + counts.failed;
@@ -110,7 +127,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// `a+ a- b!`: commit and result; `-` without a commit.
+    /// `a+ a- b!`: commit and result; `?` without a commit. Upper-case letters are sources.
     fn count(attempts: &str) -> Flips {
         let attempts: Vec<Attempt<'_>> = attempts
             .split_whitespace()
@@ -127,7 +144,10 @@ mod tests {
                     "i" => Verdict::Interrupted,
                     other => panic!("unknown result `{other}`"),
                 };
-                Attempt { commit: (commit != "?").then_some(commit), verdict }
+                let is_source = commit.starts_with(|c: char| c.is_ascii_uppercase());
+                let key = (commit != "?").then_some(commit);
+                let (commit, sources) = if is_source { (None, key) } else { (key, None) };
+                Attempt { commit, sources, verdict }
             })
             .collect();
         Flips::count(&attempts)
@@ -175,6 +195,26 @@ mod tests {
     }
 
     #[test]
+    fn equal_sources_are_compared() {
+        let found = count("A+ B- A- ?+ A- A+");
+        assert_eq!((found.flips, found.pairs, found.pairs_by_sources), (2, 3, 3));
+    }
+
+    #[test]
+    fn a_result_is_compared_with_the_last_comparable_one() {
+        let of = |commit, sources, verdict| Attempt { commit, sources, verdict };
+        let found = Flips::count(&[
+            of(Some("a"), Some("s"), Verdict::Passed),
+            of(Some("a"), Some("t"), Verdict::Failed),
+            // The last one of its commit has other sources, and is later than that of its sources.
+            of(Some("a"), Some("s"), Verdict::Failed),
+            of(None, Some("t"), Verdict::Failed),
+            of(None, Some("s"), Verdict::Passed),
+        ]);
+        assert_eq!((found.flips, found.pairs, found.pairs_by_sources), (2, 4, 2));
+    }
+
+    #[test]
     fn no_attempts_have_no_rates() {
         assert_eq!(Flips::count(&[]), Flips::default());
     }
@@ -187,6 +227,7 @@ mod tests {
                 .iter()
                 .map(|(commit, verdict)| Attempt {
                     commit: Some(commits[*commit]),
+                    sources: None,
                     verdict: Verdict::ALL[*verdict],
                 })
                 .collect();

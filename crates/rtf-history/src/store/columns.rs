@@ -1,9 +1,9 @@
 //! The results and points of a run, packed: what answers over many runs read of each.
 //!
-//! A run has one row with two blobs. Answers over thousands of runs would otherwise read
+//! A run has one row with blobs. Answers over thousands of runs would otherwise read
 //! millions of rows, of which decoding alone takes seconds. The format: numbers are LEB128,
 //! ids ascend and are stored as differences, floating-point numbers are little-endian and NaN
-//! for unknown ones.
+//! for unknown ones. A third blob has the hashes of the sources of the results.
 
 use std::collections::HashMap;
 
@@ -21,12 +21,16 @@ pub(crate) struct PackedResult {
     /// The position of its robot in [`PackedResults::robots`].
     pub robot: usize,
     pub duration_us: Option<i64>,
+    /// The hash of its sources.
+    pub source: Option<u64>,
 }
 
 impl PackedResult {
     pub fn new(test: i64, result: &ResultEntry) -> Self {
         let ResultEntry { verdict, is_flaky, duration_us, .. } = *result;
-        Self { test, verdict, is_flaky, robot: 0, duration_us }
+        let source = result.source_hash.as_ref();
+        let source = source.and_then(|hash| u64::from_str_radix(hash, 16).ok());
+        Self { test, verdict, is_flaky, robot: 0, duration_us, source }
     }
 }
 
@@ -59,8 +63,10 @@ impl ResultPacker {
         self.results.push(result);
     }
 
-    pub fn finish(mut self) -> Vec<u8> {
+    /// The results, and their sources.
+    pub fn finish(mut self) -> (Vec<u8>, Vec<u8>) {
         self.results.sort_by_key(|result| result.test);
+        let sources = self.sources();
         let mut blob = Vec::with_capacity(16 + 8 * self.results.len());
         push(&mut blob, self.robots.len() as u64);
         for robot in &self.robots {
@@ -74,6 +80,25 @@ impl ResultPacker {
             push(&mut blob, result.robot as u64);
             let micros = result.duration_us.and_then(|micros| u64::try_from(micros).ok());
             push(&mut blob, micros.map_or(0, |micros| micros + 1));
+        }
+        (blob, sources)
+    }
+
+    /// The different hashes, and for each result the position of its hash, from 1, or 0.
+    fn sources(&self) -> Vec<u8> {
+        let (mut positions, mut hashes) = (HashMap::new(), Vec::new());
+        for source in self.results.iter().filter_map(|result| result.source) {
+            positions.entry(source).or_insert_with(|| {
+                hashes.push(source);
+                hashes.len() as u64
+            });
+        }
+        let mut blob = Vec::with_capacity(8 + 8 * hashes.len() + self.results.len());
+        push(&mut blob, hashes.len() as u64);
+        hashes.iter().for_each(|hash| blob.extend_from_slice(&hash.to_le_bytes()));
+        for result in &self.results {
+            let position = result.source.and_then(|source| positions.get(&source));
+            push(&mut blob, position.copied().unwrap_or_default());
         }
         blob
     }
@@ -133,18 +158,26 @@ fn push(blob: &mut Vec<u8>, mut number: u64) {
 pub(crate) struct PackedResults<'a> {
     bytes: Bytes<'a>,
     pub robots: Vec<&'a str>,
+    /// The hashes of the sources.
+    pub sources: Vec<u64>,
+    source_bytes: Bytes<'a>,
     id: i64,
 }
 
 impl<'a> PackedResults<'a> {
-    pub fn new(blob: &'a [u8]) -> Self {
-        let mut bytes = Bytes(blob);
-        let mut robots = Vec::new();
+    /// Results, and the blob of their sources, which may be empty.
+    pub fn new(blob: &'a [u8], sources: &'a [u8]) -> Self {
+        let (mut bytes, mut source_bytes) = (Bytes(blob), Bytes(sources));
+        let (mut robots, mut sources) = (Vec::new(), Vec::new());
+        for _ in 0..source_bytes.number().unwrap_or_default() {
+            let Some(hash) = source_bytes.hash() else { break };
+            sources.push(hash);
+        }
         for _ in 0..bytes.number().unwrap_or_default() {
             let Some(robot) = bytes.text() else { break };
             robots.push(robot);
         }
-        Self { bytes, robots, id: 0 }
+        Self { bytes, robots, sources, source_bytes, id: 0 }
     }
 }
 
@@ -156,12 +189,15 @@ impl Iterator for PackedResults<'_> {
         let verdict = self.bytes.number()?;
         let robot = usize::try_from(self.bytes.number()?).ok()?;
         let duration_us = self.bytes.number()?.checked_sub(1);
+        let source = self.source_bytes.number().and_then(|position| position.checked_sub(1));
+        let source = source.and_then(|position| self.sources.get(usize::try_from(position).ok()?));
         Some(PackedResult {
             test: self.id,
             verdict: *Verdict::ALL.get((verdict >> 1) as usize)?,
             is_flaky: verdict & 1 == 1,
             robot,
             duration_us: duration_us.and_then(|micros| i64::try_from(micros).ok()),
+            source: source.copied(),
         })
     }
 }
@@ -221,10 +257,15 @@ impl<'a> Bytes<'a> {
     /// `Some(None)` is an unknown number.
     #[expect(clippy::option_option, reason = "the end, and an unknown number")]
     fn float(&mut self) -> Option<Option<f64>> {
+        let number = f64::from_bits(self.hash()?);
+        Some((!number.is_nan()).then_some(number))
+    }
+
+    /// A number of 8 bytes.
+    fn hash(&mut self) -> Option<u64> {
         let (bytes, rest) = self.0.split_first_chunk()?;
         self.0 = rest;
-        let number = f64::from_le_bytes(*bytes);
-        Some((!number.is_nan()).then_some(number))
+        Some(u64::from_le_bytes(*bytes))
     }
 
     fn text(&mut self) -> Option<&'a str> {
@@ -251,19 +292,26 @@ mod tests {
             let (robot, duration_us) = (robots[index % 4], durations[index % 3]);
             let test = 1_000_000_i64 << index;
             let is_flaky = index % 5 == 0;
-            packer.add(PackedResult { test, verdict, is_flaky, robot: 0, duration_us }, robot);
-            expected.push((test, verdict, is_flaky, robot, duration_us));
+            let source = [None, Some(7), Some(u64::MAX), Some(7)][index % 4];
+            let result = PackedResult { test, verdict, is_flaky, robot: 0, duration_us, source };
+            packer.add(result, robot);
+            expected.push((test, verdict, is_flaky, robot, (duration_us, source)));
         }
         // The order in which they are added does not matter.
         packer.results.reverse();
-        let blob = packer.finish();
-        let mut reader = PackedResults::new(&blob);
+        let (blob, sources) = packer.finish();
+        let mut reader = PackedResults::new(&blob, &sources);
         let robots = reader.robots.clone();
         let found: Vec<_> = reader
             .by_ref()
-            .map(|it| (it.test, it.verdict, it.is_flaky, robots[it.robot], it.duration_us))
+            .map(|it| {
+                (it.test, it.verdict, it.is_flaky, robots[it.robot], (it.duration_us, it.source))
+            })
             .collect();
         assert_eq!(found, expected);
+        // An earlier version stored no sources.
+        let without = PackedResults::new(&blob, &[]);
+        assert!(without.zip(&found).all(|(it, found)| it.test == found.0 && it.source.is_none()));
     }
 
     #[test]
@@ -302,7 +350,7 @@ mod tests {
 
         #[test]
         fn damaged_blobs_end_early(blob in prop::collection::vec(any::<u8>(), 0..200)) {
-            prop_assert!(PackedResults::new(&blob).count() <= blob.len());
+            prop_assert!(PackedResults::new(&blob, &blob).count() <= blob.len());
             prop_assert!(PackedPoints::new(&blob).count() <= blob.len());
         }
     }

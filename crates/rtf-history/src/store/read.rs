@@ -4,7 +4,7 @@ use jiff::Timestamp;
 use rtf_model::Verdict;
 
 use super::database::{Database, DatabaseError, Row, Value};
-use super::{Store, StoreError, sql};
+use super::{PackedPoints, PackedResults, Store, StoreError, sql};
 use crate::answers::RunInfo;
 use crate::entry::{NumberKind, NumberSummary, RunEnd, SeriesName};
 use crate::{TestAttributes, TestIdentity};
@@ -30,6 +30,7 @@ pub(crate) struct ResultRow {
     pub reason: Option<String>,
     pub robot: String,
     pub plugin_hash: Option<String>,
+    pub source_hash: Option<String>,
 }
 
 /// The numbers of a run in a series.
@@ -99,30 +100,35 @@ impl Store {
     pub(crate) fn for_each_result_column(
         &self,
         (first, last): (i64, i64),
-        visit: impl FnMut(i64, &[u8]),
+        mut visit: impl FnMut(i64, PackedResults<'_>),
     ) -> Result<(), StoreError> {
-        self.for_each_column(sql::RESULT_COLUMNS, (first, last), visit)
+        self.for_each_column(sql::RESULT_COLUMNS, (first, last), |row| {
+            // A run that an earlier version imported has no sources.
+            let sources = row.optional_bytes(2)?.unwrap_or_default();
+            visit(row.get(0)?, PackedResults::new(row.bytes(1)?, sources));
+            Ok(())
+        })
     }
 
     /// Calls `visit` with the packed points of each run from `first` to `last`.
     pub(crate) fn for_each_point_column(
         &self,
         (first, last): (i64, i64),
-        visit: impl FnMut(i64, &[u8]),
+        mut visit: impl FnMut(i64, PackedPoints<'_>),
     ) -> Result<(), StoreError> {
-        self.for_each_column(sql::POINT_COLUMNS, (first, last), visit)
+        self.for_each_column(sql::POINT_COLUMNS, (first, last), |row| {
+            visit(row.get(0)?, PackedPoints::new(row.bytes(1)?));
+            Ok(())
+        })
     }
 
     fn for_each_column(
         &self,
         sql: &str,
         (first, last): (i64, i64),
-        mut visit: impl FnMut(i64, &[u8]),
+        mut visit: impl FnMut(&Row<'_>) -> Result<(), DatabaseError>,
     ) -> Result<(), StoreError> {
-        let visited = self.database.for_each(sql, &[first.into(), last.into()], &mut |row| {
-            visit(row.get(0)?, row.bytes(1)?);
-            Ok(())
-        });
+        let visited = self.database.for_each(sql, &[first.into(), last.into()], &mut visit);
         visited.map_err(|error| self.error(error))
     }
 
@@ -278,6 +284,7 @@ fn result(row: &Row<'_>) -> Result<ResultRow, DatabaseError> {
         reason: row.get(6)?,
         robot: row.get(7)?,
         plugin_hash: row.get(8)?,
+        source_hash: row.get(9)?,
     })
 }
 

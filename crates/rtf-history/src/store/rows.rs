@@ -37,8 +37,10 @@ pub(super) fn insert(
         let results = with_tests(database, part, started_us)?;
         insert_results(database, run_id, &results, &mut columns)?;
     }
-    let (results, points) = (columns.results.finish(), columns.points.finish());
-    let values = [run_id.into(), results.as_slice().into(), points.as_slice().into()];
+    let ((results, sources), points) = (columns.results.finish(), columns.points.finish());
+    let blobs = [&results, &points, &sources].map(|blob| Value::from(blob.as_slice()));
+    let [results, points, sources] = blobs;
+    let values = [run_id.into(), results, points, sources];
     database.execute(sql::INSERT_RUN_COLUMNS, &values)
 }
 
@@ -170,7 +172,7 @@ fn insert_results(
     database.batch(&sql::INSERT_POINTS, &points, &mut |_| Ok(()))
 }
 
-fn result_row(test: i64, run: i64, result: &ResultEntry) -> [Value<'_>; 10] {
+fn result_row(test: i64, run: i64, result: &ResultEntry) -> [Value<'_>; 11] {
     [
         test.into(),
         run.into(),
@@ -182,6 +184,7 @@ fn result_row(test: i64, run: i64, result: &ResultEntry) -> [Value<'_>; 10] {
         result.reason.as_ref().into(),
         (&result.robot).into(),
         result.plugin_hash.as_ref().into(),
+        result.source_hash.as_ref().into(),
     ]
 }
 

@@ -5,7 +5,7 @@
 pub const APPLICATION_ID: i64 = 0x5254_4648;
 
 /// The migrations, in order. A released one is never changed.
-pub const MIGRATIONS: &[&str] = &[VERSION_1, VERSION_2];
+pub const MIGRATIONS: &[&str] = &[VERSION_1, VERSION_2, VERSION_3];
 
 const VERSION_1: &str = "
 CREATE TABLE run (
@@ -160,6 +160,11 @@ CREATE TABLE pruned_campaign (
   uid TEXT PRIMARY KEY,
   directory TEXT NOT NULL
 );
+";
+
+const VERSION_3: &str = "
+ALTER TABLE result ADD COLUMN source_hash TEXT;
+ALTER TABLE run_columns ADD COLUMN sources BLOB;
 ";
 
 /// In PostgreSQL: the schema with the tables, and their version.

@@ -128,9 +128,9 @@ pub const RENAME_TEST: &str = "UPDATE test SET renamed_to = $1 WHERE id = $2";
 pub(super) const INSERT_RESULTS: Batch = Batch {
     head: "
 INSERT INTO result (test_id, run_id, verdict, flaky, attempts, problems, duration_us, reason,
-  robot, plugin_hash)
+  robot, plugin_hash, source_hash)
 VALUES",
-    columns: 10,
+    columns: 11,
     tail: "",
 };
 /// The series of tests.
@@ -156,7 +156,7 @@ VALUES",
 };
 /// Adds the packed results and points of a run.
 pub const INSERT_RUN_COLUMNS: &str =
-    "INSERT INTO run_columns (run_id, results, points) VALUES ($1, $2, $3)";
+    "INSERT INTO run_columns (run_id, results, points, sources) VALUES ($1, $2, $3, $4)";
 
 /// All runs, the oldest first.
 pub const RUNS: &str = "
@@ -170,15 +170,17 @@ SELECT id, suite_file, suite, name, case_path, plugin_type, tags, parameters, re
 FROM test ORDER BY suite_file, suite, name, case_path";
 /// The results of a test.
 pub const RESULTS_OF_TEST: &str = "
-SELECT run_id, verdict, flaky, attempts, problems, duration_us, reason, robot, plugin_hash
+SELECT run_id, verdict, flaky, attempts, problems, duration_us, reason, robot, plugin_hash,
+  source_hash
 FROM result WHERE test_id = $1";
 /// The result of a test in a run.
 pub const RESULT_OF_TEST: &str = "
-SELECT run_id, verdict, flaky, attempts, problems, duration_us, reason, robot, plugin_hash
+SELECT run_id, verdict, flaky, attempts, problems, duration_us, reason, robot, plugin_hash,
+  source_hash
 FROM result WHERE test_id = $1 AND run_id = $2";
 /// The packed results of the runs in a range of ids.
 pub const RESULT_COLUMNS: &str = "
-SELECT run_id, results FROM run_columns WHERE run_id BETWEEN $1 AND $2 ORDER BY run_id";
+SELECT run_id, results, sources FROM run_columns WHERE run_id BETWEEN $1 AND $2 ORDER BY run_id";
 /// The packed points of the runs in a range of ids.
 pub const POINT_COLUMNS: &str = "
 SELECT run_id, points FROM run_columns WHERE run_id BETWEEN $1 AND $2 ORDER BY run_id";

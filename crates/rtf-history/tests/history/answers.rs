@@ -11,7 +11,7 @@ fn single(day: u32, commit: &'static str, verdict: Verdict) -> Run {
 }
 
 fn flaky(world: &World, runs: &RunSelection) -> Vec<FlakyTest> {
-    world.store.flaky(runs, &all_tests).expect("flaky tests")
+    world.store.flaky(runs, &all_tests).expect("flaky tests").tests
 }
 
 #[test]
@@ -43,6 +43,50 @@ fn uncommitted_changes_and_another_robot_are_not_compared() {
     assert_eq!(flaky(&World::with(&runs), &all_runs()), []);
     runs[1].robot = "";
     assert_eq!(flaky(&World::with(&runs), &all_runs()).len(), 1);
+}
+
+#[test]
+fn equal_sources_are_compared_whether_committed_or_not() {
+    let mut runs: Vec<_> = [Passed, Failed, Passed, Failed, Passed]
+        .into_iter()
+        .zip(["aaaa", "aaaa", "", "bbbb", "cccc"])
+        .zip(1..)
+        .map(|((verdict, commit), day)| single(day, commit, verdict))
+        .collect();
+    for (run, sources) in runs.iter_mut().zip(["1f", "1f", "1f", "2e", "1f"]) {
+        run.tests[0].sources = Some(sources);
+    }
+    runs[1].dirty = true;
+    let world = World::with(&runs);
+    let found = flaky(&world, &all_runs());
+    let flips = found[0].flips;
+    assert_eq!((flips.flips, flips.pairs, flips.pairs_by_sources), (2, 3, 3));
+    let compared = world.store.flaky(&all_runs(), &all_tests).expect("flaky tests").compared;
+    assert_eq!((compared.by_commit, compared.by_sources, compared.neither), (3, 2, 0));
+    runs[1].robot = "robot:icub";
+    runs[2].tests[0].sources = None;
+    let world = World::with(&runs);
+    assert_eq!(flaky(&world, &all_runs()), [], "another robot, and unknown sources");
+    let compared = world.store.flaky(&all_runs(), &all_tests).expect("flaky tests").compared;
+    assert_eq!((compared.by_sources, compared.neither), (1, 1));
+}
+
+#[test]
+fn a_change_says_whether_the_sources_of_the_test_changed() {
+    let run = |day: u32, sources: [&'static str; 2]| {
+        let late = day > 4;
+        let mut test = Test::new("Moves", Passed);
+        test.measured = vec![("lag", Some(if late { 20.0 } else { 10.0 }), "ms")];
+        test.sources = Some(sources[usize::from(late)]);
+        Run::new(day, "", vec![test])
+    };
+    for (sources, changed) in [(["1", "1"], false), (["1", "2"], true)] {
+        let runs: Vec<_> = (1..=8).map(|day| run(day, sources)).collect();
+        let world = World::with(&runs);
+        let changes = world.store.changes(&all_runs(), &all_tests).expect("changes");
+        let found: Vec<_> = changes.iter().map(|it| (&*it.run, it.sources_changed)).collect();
+        assert_eq!(found, [("id-005", Some(changed))]);
+    }
 }
 
 #[test]

@@ -4,10 +4,10 @@ use std::fs;
 use std::path::Path;
 
 use rtf_history::{Store, StoreError};
-use rtf_model::Verdict::Passed;
+use rtf_model::Verdict::{Failed, Passed};
 use rusqlite::Connection;
 
-use crate::world::{Run, Test, World, all_runs, dump};
+use crate::world::{Run, Test, World, all_runs, all_tests, dump};
 
 fn run() -> Run {
     Run::new(1, "aaaa", vec![Test::new("Moves", Passed)])
@@ -58,11 +58,35 @@ fn a_newer_version_is_refused_and_unchanged() {
     connection.pragma_update(None, "user_version", 99).expect("a version");
     drop(connection);
     for error in open_both(&world.path()) {
-        assert!(matches!(error, StoreError::Newer { found: 99, known: 2, .. }), "{error}");
+        assert!(matches!(error, StoreError::Newer { found: 99, known: 3, .. }), "{error}");
     }
     let connection = Connection::open(world.path()).expect("a database");
     let version = connection.query_row("PRAGMA user_version", [], |row| row.get::<_, i64>(0));
     assert_eq!(version, Ok(99));
+}
+
+#[test]
+fn a_database_of_version_2_keeps_its_results() {
+    let day = |day, verdict| Run::new(day, "aaaa", vec![Test::new("Moves", verdict)]);
+    let world = World::with(&[day(1, Passed), day(2, Failed)]);
+    let before = world.dump();
+    let path = world.path();
+    let dir = world.dir;
+    drop(world.store);
+    let connection = Connection::open(&path).expect("a database");
+    let earlier = "ALTER TABLE result DROP COLUMN source_hash;
+                   ALTER TABLE run_columns DROP COLUMN sources;
+                   PRAGMA user_version = 2;";
+    connection.execute_batch(earlier).expect("version 2");
+    drop(connection);
+    let mut store = Store::open_existing(&path).expect("a store");
+    assert_eq!(dump(&store), before);
+    let mut next = day(3, Passed);
+    next.tests[0].sources = Some("1f");
+    store.import(&next.record()).expect("an import");
+    let flaky = store.flaky(&all_runs(), &all_tests).expect("flaky tests");
+    assert_eq!((flaky.tests[0].flips.flips, flaky.tests[0].flips.pairs), (2, 2));
+    drop(dir);
 }
 
 #[test]

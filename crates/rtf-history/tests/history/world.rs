@@ -40,11 +40,14 @@ pub struct Test {
     pub millis: u64,
     /// Name, value and unit.
     pub measured: Vec<(&'static str, Option<f64>, &'static str)>,
+    /// The hash of its sources.
+    pub sources: Option<&'static str>,
 }
 
 impl Test {
     pub fn new(name: &'static str, verdict: Verdict) -> Self {
-        Self { name, was: None, verdicts: vec![verdict], millis: 100, measured: Vec::new() }
+        let (verdicts, measured) = (vec![verdict], Vec::new());
+        Self { name, was: None, verdicts, millis: 100, measured, sources: None }
     }
 }
 
@@ -59,16 +62,16 @@ impl Run {
     }
 
     fn started(&self) -> RunStarted {
-        let revision = Revision {
+        // An empty commit: there is no repository.
+        let revision = (!self.commit.is_empty()).then(|| Revision {
             commit: self.commit.to_owned(),
             branch: Some(self.branch.to_owned()),
             dir: Some(String::new()),
             dirty: Some(self.dirty),
             author_time: None,
-        };
+        });
         let origin = Origin { id: self.id(), host: "bench".to_owned(), ..Origin::default() };
-        let manifest =
-            Manifest { revision: Some(revision), origin: Some(origin), ..Manifest::default() };
+        let manifest = Manifest { revision, origin: Some(origin), ..Manifest::default() };
         let start: jiff::Timestamp = "2026-01-01T00:00:00Z".parse().expect("a time");
         let start = start + jiff::SignedDuration::from_hours(24 * i64::from(self.day));
         RunStarted {
@@ -109,6 +112,7 @@ impl Run {
                 plugin_type: "lua".to_owned(),
                 plugin: String::new(),
                 plugin_hash: None,
+                source_hash: test.sources.map(str::to_owned),
                 repetitions: 1,
                 timed: false,
                 tags: vec!["smoke".to_owned()],

@@ -25,6 +25,7 @@ fn a_history_in_postgresql() {
     answers_are_those_of_sqlite(&server);
     concurrent_writers_lose_nothing(&server);
     a_newer_version_is_refused(&server);
+    an_earlier_version_keeps_its_results(&server);
     connections_are_encrypted(&server);
     a_password_is_never_printed(&server);
     let address = server.address("postgres", "sslmode=disable");
@@ -47,6 +48,7 @@ fn runs() -> Vec<Run> {
             retried.verdicts = vec![Failed, Passed];
         }
         retried.millis = u64::from(day);
+        moves.sources = [None, Some("1f"), Some("ffffffffffffffff")][(day % 3) as usize];
         let commit = ["aaaa", "bbbb", "cccc"][(day / 4 % 3) as usize];
         let robot = ["robot:icub", "robot:ergocub gpu"][(day % 2) as usize];
         Run {
@@ -116,7 +118,7 @@ fn answers_are_those_of_sqlite(server: &Server) {
     assert_eq!(answers(&postgres), answers(&sqlite));
     assert!(!postgres.changes(&all_runs(), &all_tests).expect("changes").is_empty());
     assert_eq!(postgres.campaign_changes(&all_runs()).expect("changes").len(), 1);
-    assert!(!postgres.flaky(&all_runs(), &all_tests).expect("flaky tests").is_empty());
+    assert!(!postgres.flaky(&all_runs(), &all_tests).expect("flaky tests").tests.is_empty());
     let removed = [&mut sqlite, &mut postgres].map(|store| {
         let removed = store.prune(Keep::Newest(10)).expect("a removal");
         assert_eq!(store.import(&runs[0].record()).expect("no import"), ImportOutcome::Pruned);
@@ -165,6 +167,24 @@ fn a_newer_version_is_refused(server: &Server) {
         let error = error.expect_err("refused");
         assert!(matches!(error, StoreError::Newer { found: 99, .. }), "{error}");
     }
+}
+
+fn an_earlier_version_keeps_its_results(server: &Server) {
+    let location = server.database("earlier");
+    let mut store = Store::open(&location).expect("a store");
+    let runs = runs();
+    store.import(&runs[0].record()).expect("an import");
+    let before = dump(&store);
+    drop(store);
+    let earlier = "ALTER TABLE rtf_history.result DROP COLUMN source_hash;
+                   ALTER TABLE rtf_history.run_columns DROP COLUMN sources;
+                   DELETE FROM rtf_history.migration WHERE version = 3";
+    server.execute("earlier", earlier);
+    let mut store = Store::open_existing(&location).expect("a store");
+    // A run without sources is stored as before.
+    assert_eq!(dump(&store).len(), before.len());
+    store.import(&runs[1].record()).expect("an import");
+    assert_eq!(store.runs(&all_runs()).expect("runs").len(), 2);
 }
 
 fn connections_are_encrypted(server: &Server) {

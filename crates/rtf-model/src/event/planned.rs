@@ -168,6 +168,9 @@ pub struct TestPlanned {
     /// The hash of the plug-in's file: 64 bits as hexadecimal digits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plugin_hash: Option<String>,
+    /// The hash of its sources, as far as they are known: 64 bits as hexadecimal digits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source_hash: Option<String>,
     /// Number of repetitions; when `timed`, in each round.
     pub repetitions: u32,
     /// Whether it is repeated, round by round, for a given time.

@@ -69,6 +69,7 @@ pub(super) fn test(index: u32, suite: SuiteId) -> TestRecord {
         tags: Vec::new(),
         parameters: Vec::new(),
         plugin_hash: None,
+        source_hash: None,
         was: None,
         expected: None,
     })

@@ -59,6 +59,7 @@ pub fn test(id: u32, suite: u32, repetitions: u32) -> EventKind {
         timed: false,
         tags: Vec::new(),
         plugin_hash: None,
+        source_hash: None,
         was: None,
         expected: None,
         parameters: Vec::new(),

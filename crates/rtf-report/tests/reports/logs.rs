@@ -91,6 +91,7 @@ fn names_that_look_alike_get_files_of_their_own() {
             timed: false,
             tags: Vec::new(),
             plugin_hash: None,
+            source_hash: None,
             was: None,
             expected: None,
             parameters: Vec::new(),

@@ -167,6 +167,7 @@ impl Writer {
                 timed: false,
                 tags: Vec::new(),
                 plugin_hash: None,
+                source_hash: None,
                 was: None,
                 expected: None,
                 parameters: Vec::new(),

@@ -148,7 +148,7 @@ impl Store {
             Some(max) => {
                 let all = runs.ids().chain([runs.run.id.clone()]).collect();
                 let flaky = self.flaky(&select(all), tests)?;
-                let flaky = flaky.into_iter().map(|test| test.identity).collect();
+                let flaky = flaky.tests.into_iter().map(|test| test.identity).collect();
                 Some(compared.flaky(max, flaky))
             }
             None => None,

@@ -112,6 +112,16 @@ impl Row<'_> {
             Self::Postgres(row) => row.try_get(index)?,
         })
     }
+
+    /// The bytes of a column that may be null.
+    pub fn optional_bytes(&self, index: usize) -> Result<Option<&[u8]>, DatabaseError> {
+        Ok(match self {
+            Self::Sqlite(row) => {
+                row.get_ref(index)?.as_blob_or_null().map_err(rusqlite::Error::from)?
+            }
+            Self::Postgres(row) => row.try_get(index)?,
+        })
+    }
 }
 
 /// A type of values of rows.

@@ -10,6 +10,7 @@ fn test(id: u32) -> TestPlanned {
         plugin_type: String::new(),
         plugin: String::new(),
         plugin_hash: None,
+        source_hash: None,
         repetitions: 1,
         timed: false,
         tags: Vec::new(),

@@ -166,6 +166,7 @@ impl Run {
                 timed: false,
                 tags: Vec::new(),
                 plugin_hash: None,
+                source_hash: None,
                 was: None,
                 expected: None,
                 parameters: Vec::new(),

@@ -4,14 +4,15 @@ mod selection;
 mod types;
 
 use axum::extract::State;
+use rtf_history::answers::FlakyTests;
 use rtf_history::{RunSelection, Store, TestAttributes};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
 use self::selection::{HistoryProblem, HistoryQuery, Selection, answer};
 use self::types::{
-    FlakyTests, HistoryCampaigns, HistoryChange, HistoryComparison, HistoryMatrix, HistoryRuns,
-    SeriesTrend, SlowTests, TestHistories,
+    HistoryCampaigns, HistoryChange, HistoryComparison, HistoryMatrix, HistoryRuns, SeriesTrend,
+    SlowTests, TestHistories,
 };
 use super::details::JsonResult;
 use super::problems::Problems;
@@ -180,7 +181,8 @@ pub async fn campaigns(
     .await
 }
 
-/// Tests that both passed and failed on one commit or in one run, the most flaky first.
+/// Tests that both passed and failed on one commit, with equal sources, or in one run, the most
+/// flaky first.
 #[utoipa::path(get, path = "/history/flaky", tag = "history", operation_id = "history_flaky",
     params(HistoryQuery, Most), responses((status = 200, body = FlakyTests), Problems))]
 pub async fn flaky(
@@ -190,9 +192,9 @@ pub async fn flaky(
 ) -> JsonResult {
     let limit = limit(most.limit, PAGE)?;
     answer(app, query, move |store, selection| {
-        let mut tests = store.flaky(&selection.runs, &|test| selection.lists(test))?;
-        tests.truncate(limit);
-        Ok(FlakyTests { tests })
+        let mut flaky = store.flaky(&selection.runs, &|test| selection.lists(test))?;
+        flaky.tests.truncate(limit);
+        Ok(flaky)
     })
     .await
 }

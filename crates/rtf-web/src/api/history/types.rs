@@ -3,8 +3,8 @@
 use jiff::Timestamp;
 use rtf_history::TestIdentity;
 use rtf_history::answers::{
-    CampaignChange, CampaignSeries, Comparison, FlakyTest, MatrixRow, RunInfo, SeriesChange,
-    SlowTest, TestHistory, TestSeries, VerdictMatrix,
+    CampaignChange, CampaignSeries, Comparison, MatrixRow, RunInfo, SeriesChange, SlowTest,
+    TestHistory, TestSeries, VerdictMatrix,
 };
 use rtf_history::entry::SeriesName;
 use serde::Serialize;
@@ -137,13 +137,6 @@ pub struct HistoryCampaigns {
     pub rates: Vec<CampaignSeries>,
     /// Since when the rates are different, the newest change first.
     pub changes: Vec<CampaignChange>,
-}
-
-/// Flaky tests.
-#[derive(Debug, Serialize, ToSchema)]
-pub struct FlakyTests {
-    /// The most flaky first.
-    pub tests: Vec<FlakyTest>,
 }
 
 /// Tests by duration.

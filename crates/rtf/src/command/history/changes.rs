@@ -102,5 +102,10 @@ fn write(out: &mut dyn Write, found: &SeriesChange) -> io::Result<()> {
     if !on.is_empty() {
         write!(out, ", on {}", escape::line(&on.join(", ")))?;
     }
+    match found.sources_changed {
+        Some(true) => write!(out, ", with other sources of the test")?,
+        Some(false) => write!(out, ", with equal sources of the test")?,
+        None => {}
+    }
     writeln!(out)
 }

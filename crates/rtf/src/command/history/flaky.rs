@@ -4,11 +4,11 @@ use std::io::{self, Write};
 
 use clap::ArgMatches;
 use rtf_history::TestAttributes;
-use rtf_history::answers::FlakyTest;
+use rtf_history::answers::{ComparedRuns, FlakyTest, FlakyTests};
 use rtf_history::statistics::Rate;
 use rtf_report::format_count;
 
-use super::{failure, open, print, select, show, text};
+use super::{failure, open, print_both, select, show, text};
 use crate::cli::HistoryTestsArgs;
 use crate::command::VerbResult;
 
@@ -20,25 +20,31 @@ pub fn run(mut args: HistoryTestsArgs, matches: &ArgMatches) -> VerbResult {
         (args.cases || test.identity.case.is_empty()) && filter.matches(test)
     };
     let mut flaky = store.flaky(&runs, &is_meant).map_err(failure)?;
-    flaky.truncate(args.limit.unwrap_or(usize::MAX));
-    let uncommitted = store.runs(&runs).map_err(failure)?;
-    let uncommitted = uncommitted.iter().map(|run| u64::from(!run.is_committed())).sum();
-    print(args.history.format, "tests", &flaky, |out| {
-        write(out, &flaky)?;
-        write_uncommitted(out, uncommitted)
+    flaky.tests.truncate(args.limit.unwrap_or(usize::MAX));
+    let FlakyTests { tests, compared } = &flaky;
+    print_both(args.history.format, ("tests", tests), ("compared", compared), |out| {
+        write(out, tests)?;
+        write_compared(out, compared)
     })
 }
 
-/// Says what was not compared, because that can be why a test is missing.
-fn write_uncommitted(out: &mut dyn Write, runs: u64) -> io::Result<()> {
-    if runs == 0 {
-        return Ok(());
+/// Prints how runs without a clean commit were compared, because that can be why a test is listed
+/// or missing.
+fn write_compared(out: &mut dyn Write, compared: &ComparedRuns) -> io::Result<()> {
+    let runs = |count| format_count(count, "run");
+    let without = "without a commit or with uncommitted changes";
+    if compared.by_sources > 0 {
+        let count = runs(compared.by_sources);
+        writeln!(
+            out,
+            "compared if the sources of a test are equal (suite, plug-ins, their modules), {without}: {count}"
+        )?;
     }
-    let runs = format_count(runs, "run");
-    writeln!(
-        out,
-        "not compared with other runs, without a commit or with uncommitted changes: {runs}"
-    )
+    if compared.neither > 0 {
+        let count = runs(compared.neither);
+        writeln!(out, "not compared with other runs, {without}: {count}")?;
+    }
+    Ok(())
 }
 
 fn write(out: &mut dyn Write, tests: &[FlakyTest]) -> io::Result<()> {
@@ -50,7 +56,16 @@ fn write(out: &mut dyn Write, tests: &[FlakyTest]) -> io::Result<()> {
         let pairs = format_count(flips.pairs, "pair");
         writeln!(out, "{}", text::name(&test.identity))?;
         let flip = format_count(flips.flips, "flip");
-        writeln!(out, "  {flip} in {pairs} of comparable results{}", rate(flips.flip_rate))?;
+        let by_sources = match flips.pairs_by_sources {
+            0 => String::new(),
+            all if all == flips.pairs => " with equal sources".to_owned(),
+            some => format!(" ({some} with equal sources)"),
+        };
+        writeln!(
+            out,
+            "  {flip} in {pairs} of comparable results{by_sources}{}",
+            rate(flips.flip_rate)
+        )?;
         writeln!(out, "  {} passed, {} failed{}", flips.passed, flips.failed, bench(test))?;
         test.last_problem.as_ref().map_or(Ok(()), |result| show::write_problem(out, result))
     })

@@ -9,7 +9,7 @@ use notify::event::{AccessKind, AccessMode, CreateKind, ModifyKind, RenameMode};
 use notify::{Event, EventKind};
 use rtf_model::Diagnostic;
 use rtf_plan::config::ConfigFiles;
-use rtf_plan::plan::{FixtureBody, HookBody, Plan, PlanDraft};
+use rtf_plan::plan::{Plan, PlanDraft};
 
 use super::debounce::FileChange;
 use crate::cli::InputArgs;
@@ -121,35 +121,7 @@ impl Watched {
             }
             self.add_config(&suite.folder);
             suite.tests.iter().for_each(|test| self.add(&test.plugin.file));
-            let resets = suite.fixtures.iter().filter_map(|fixture| fixture.reset.as_ref());
-            let hooks = suite.hooks.iter().map(|hook| &hook.body);
-            for body in hooks.chain(resets.map(|reset| &reset.body)) {
-                match body {
-                    HookBody::Plugin(plugin) => self.add(&plugin.file),
-                    HookBody::Command(command) => self.add_command(command, &suite.folder),
-                }
-            }
-            for fixture in &suite.fixtures {
-                match &fixture.body {
-                    FixtureBody::Plugin(plugin) => self.add(&plugin.file),
-                    FixtureBody::Process(process) if process.remote.is_none() => {
-                        self.add_command(&process.command, &suite.folder);
-                    }
-                    FixtureBody::Process(_) | FixtureBody::Attached(_) => {}
-                }
-            }
-        }
-    }
-
-    /// A program, and its first argument if that is a script. The program may write to
-    /// further arguments.
-    fn add_command(&mut self, command: &[String], dir: &Path) {
-        let Some((program, args)) = command.split_first() else { return };
-        let script = args.iter().find(|arg| !arg.starts_with('-'));
-        for path in script.into_iter().chain([program]).map(|word| dir.join(word)) {
-            if path.is_file() {
-                self.add(&path);
-            }
+            suite.bench_files().iter().for_each(|file| self.add(file));
         }
     }
 

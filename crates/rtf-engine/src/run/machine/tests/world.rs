@@ -140,6 +140,7 @@ impl<'p> World<'p> {
                 timed,
                 tags: Vec::new(),
                 plugin_hash: None,
+                source_hash: None,
                 was: None,
                 expected: test.expected.clone(),
                 parameters: Vec::new(),

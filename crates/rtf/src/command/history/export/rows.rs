@@ -90,6 +90,7 @@ impl ExportRow for ResultLine {
             ("duration", Number),
             ("reason", Text),
             ("plugin_hash", Text),
+            ("source_hash", Text),
         ]
     }
 
@@ -113,6 +114,7 @@ impl ExportRow for ResultLine {
             Cell::Number(result.duration),
             maybe_text(result.reason.as_ref()),
             maybe_text(result.plugin_hash.as_ref()),
+            maybe_text(result.source_hash.as_ref()),
         ]
     }
 }
