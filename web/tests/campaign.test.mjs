@@ -14,6 +14,7 @@ const escaped = (text) => text.replaceAll('<', '&lt;').replaceAll('>', '&gt;');
 const LUA = `TestCase = {}
 function TestCase.run()
   local payload = tonumber(os.getenv('RTF_PARAM_PAYLOAD'))
+  print('payload ' .. os.getenv('RTF_PARAM_PAYLOAD'))
   rtf.check(payload < 1.5, 'too heavy for ${SCRIPT}')
 end
 `;
@@ -152,6 +153,27 @@ test('failed episodes have their parameters and commands, which repeat them', ()
         assert.equal(await again.ended, 1, again.printed);
     }));
 
+test('a failed episode opens its run, at the test that failed', () =>
+    views(async (guarded, where) => {
+        const { page } = guarded;
+        const list = page.getByRole('region', { name: 'Episodes that did not pass' });
+        const row = list.locator('tbody tr').nth(1);
+        const parameters = await row.innerText();
+        const payload = /payload=([0-9.]+)/.exec(parameters)[1];
+        if (where === 'file') {
+            assert.equal(await row.getByRole('link').count(), 0);
+            await guarded.see('rtf serve', 'section[aria-labelledby=problems]');
+            return;
+        }
+        await row.getByRole('link').click();
+        await guarded.see('too heavy for', '#detail .problem');
+        assert.match(page.url(), /runs\/campaigns%2F.*%2Fworkers%2F[12]%2F.*\/tests\/0\?attempt=/);
+        // It is the attempt of this episode: the test prints its payload.
+        await guarded.see(`payload ${payload}`, '#detail');
+        await page.getByRole('link', { name: 'its campaign' }).click();
+        await guarded.see('Campaign', 'h1');
+    }));
+
 test('axe finds nothing serious, in both themes', async () => {
     for (const colorScheme of ['light', 'dark'])
         await views(
@@ -165,7 +187,7 @@ test('a running campaign is followed, and an unknown one is said so', async () =
     await bench.write('slow.xml', '<suite name="slow"><test>Slow.lua</test></suite>');
     await bench.write('Slow.lua', 'TestCase = {}\nfunction TestCase.run() rtf.sleep(0.2) end\n');
     const slow = CAMPAIGN.replace('grasp.xml', 'slow.xml').replace(escaped(SCRIPT), 'slow');
-    await bench.write('slow-campaign.xml', slow.replace('"60"', '"30"'));
+    await bench.write('slow-campaign.xml', slow.replace('"60"', '"30"').replace('0.9', '0.95'));
     const running = bench.spawn(['campaign', 'run', 'slow-campaign.xml', '--no-history']);
     // It prints its name when its directory exists.
     while (!running.printed.includes('campaign slow')) await setTimeout(20);
@@ -174,6 +196,8 @@ test('a running campaign is followed, and an unknown one is said so', async () =
     await running.ended;
     await guarded.see('30 passed');
     await guarded.page.locator('h1', { hasText: 'running' }).waitFor({ state: 'detached' });
+    // All of 30 passed: the interval of 30 contains 0.95.
+    await guarded.see(/Undecided: a decision needs about \d+ more episodes/);
     await guarded.page.evaluate(() => (location.hash = '#/campaigns/..%2F..'));
     await guarded.see('there is no such campaign', '[role=alert]');
     await guarded.close();

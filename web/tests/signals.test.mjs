@@ -95,6 +95,17 @@ test('the interval of a violated monitor is marked in the plot, and named', asyn
     });
 });
 
+test('the plot of the violated monitor is directly below the reason', async () => {
+    await onBothPages(async ({ page }) => {
+        const section = page.getByRole('region', { name: 'Violated signals' });
+        assert.equal(await section.getByRole('img').count(), 1);
+        const reason = await section.evaluate(
+            (element) => element.previousElementSibling.textContent,
+        );
+        assert.match(reason, /monitor `not too high`/);
+    });
+});
+
 test('the tube is in the plot of its signal, without a tick', async () => {
     await onBothPages(async (guarded) => {
         const section = guarded.page.getByRole('region', { name: 'Signals' });

@@ -132,12 +132,11 @@ impl Judge {
             EpisodeResult::Failed => false,
             EpisodeResult::None => others_pass,
         };
-        if let Rule::Fixed { confidence } = self.rule {
+        if self.is_fixed() {
             let passed = results.iter().filter(|result| is_pass(result)).count() as u64;
-            let rate = exact_rate(passed, results.len() as u64, confidence)?;
             let is_complete = results.len() == self.planned;
-            let verdict = self.verdict_of(&rate).filter(|_| is_complete)?;
-            return Some((verdict, results.len()));
+            let verdict = self.decide_fixed(passed, results.len() as u64);
+            return Some((verdict.filter(|_| is_complete)?, results.len()));
         }
         let (mut passed, mut episodes) = (0, 0);
         results.iter().find_map(|result| {
@@ -148,8 +147,24 @@ impl Judge {
         })
     }
 
+    /// Whether the number of episodes is fixed.
+    pub(crate) fn is_fixed(&self) -> bool {
+        matches!(self.rule, Rule::Fixed { .. })
+    }
+
+    /// The number of planned episodes.
+    pub(crate) fn planned(&self) -> u64 {
+        self.planned as u64
+    }
+
+    /// The verdict after a fixed number of episodes.
+    pub(crate) fn decide_fixed(&self, passed: u64, episodes: u64) -> Option<Verdict> {
+        let Rule::Fixed { confidence } = self.rule else { return None };
+        self.verdict_of(&exact_rate(passed, episodes, confidence)?)
+    }
+
     /// The verdict of a sequential rule.
-    fn decide_sequentially(&self, passed: u64, episodes: u64) -> Option<Verdict> {
+    pub(crate) fn decide_sequentially(&self, passed: u64, episodes: u64) -> Option<Verdict> {
         match &self.rule {
             Rule::Fixed { .. } => None,
             Rule::Sequence(sequence) => {

@@ -9,6 +9,7 @@
 //! - [`shrink`](mod@shrink): the smallest change from nominal parameters that fails.
 //! - [`ledger`]: which episodes have results, and which are still to be run.
 //! - [`judgement`]: results of episodes → a verdict, and whether the campaign may end.
+//! - [`forecast`]: how many more episodes an undecided claim needs.
 //!
 //! This crate starts no process. It reads the CSV files that a campaign names, and writes nothing.
 
@@ -16,6 +17,7 @@ pub mod analysis;
 pub mod comparison;
 pub mod episodes;
 pub mod file;
+pub mod forecast;
 pub mod judgement;
 pub mod ledger;
 pub mod ranges;

@@ -58,7 +58,8 @@ pub use question::{AnswerChannel, Question, QuestionAsked, QuestionClosed, Respo
 pub use record::{
     AttemptCases, AttemptCounts, AttemptRecord, CaseRecord, EpisodeOutcome, EpisodeRecord,
     FixtureLife, FixtureRecord, FixtureState, HookRecord, HookRunRecord, HostRecord, PlannedCases,
-    QuestionRecord, Record, RunState, SignalSummary, SuiteRecord, TestRecord, TestTotals,
+    ProblemTest, QuestionRecord, Record, RunState, SignalSummary, SuiteRecord, TestRecord,
+    TestTotals,
 };
 pub use report::{
     Attachment, Comparison, Location, Measurement, Message, MessageKind, PictureCheck,

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use rtf_model::{EpisodeOutcome, EpisodeRecord, Event, EventKind, Record, SuiteId};
+use rtf_model::{EpisodeOutcome, EpisodeRecord, Event, EventKind, ProblemTest, Record, SuiteId};
 use serde::{Deserialize, Serialize};
 
 use crate::{ReportError, Reporter};
@@ -25,6 +25,9 @@ pub struct EpisodeLine {
     /// The first reason why it did not pass.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// The test that did not pass, if it was one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub problem: Option<ProblemTest>,
     /// From its start to its end, in microseconds.
     #[serde(default)]
     pub duration_us: u64,
@@ -107,6 +110,7 @@ fn last(record: &Record, suite: SuiteId) -> Option<EpisodeLine> {
         episode: episode.episode.id,
         outcome: Some(outcome),
         reason,
+        problem: record.episode_problem(suite).filter(|_| outcome != EpisodeOutcome::Passed),
         duration_us: finished.0.saturating_sub(episode.started.0),
         measurements: measurements(record, suite),
     })

@@ -53,6 +53,13 @@ pub struct CampaignReport {
     /// The rate with the interval of the claim. `None` if no episode has a result.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rate: Option<Rate>,
+    /// If it is undecided: about how many more episodes decide it at the present rate. Missing also
+    /// if these are more than 50 000.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub more_episodes: Option<u64>,
+    /// The same as a sentence.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub forecast: Option<String>,
     /// The rate after some of the first episodes.
     pub progress: Vec<CampaignProgress>,
     /// The rates by parameter, the one with the largest effect first.
@@ -135,4 +142,20 @@ pub struct EpisodeProblem {
     pub parameters: BTreeMap<String, String>,
     /// The command that repeats it.
     pub command: String,
+    /// Where its messages, plots and attachments are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub run: Option<EpisodeRun>,
+}
+
+/// The run of a worker in which an episode ran.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+pub struct EpisodeRun {
+    /// The run, as in the routes of runs.
+    pub run: String,
+    /// The test that did not pass, if it was one, and if the version of the worker stored it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub test: Option<u32>,
+    /// Its attempt in the run, from 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub attempt: Option<u32>,
 }

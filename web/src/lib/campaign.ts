@@ -1,6 +1,7 @@
 // The results of one campaign as plots.
 
-import type { CampaignCell, CampaignMap, CampaignReport } from '../generated/api';
+import type { CampaignCell, CampaignMap, CampaignReport, EpisodeRun } from '../generated/api';
+import { runHref, testHref } from './route';
 
 /** The height of the plot of the progress. */
 export const HEIGHT = 200;
@@ -15,6 +16,11 @@ export interface ProgressDrawing {
     left: number;
     right: number;
     bottom: number;
+}
+
+/** The page of an episode: the test that did not pass, in the run of its worker. */
+export function episodeHref({ run, test, attempt }: EpisodeRun): string {
+    return test === undefined ? runHref(run) : testHref(run, test, attempt ?? null);
 }
 
 /** A rate in percent, with one decimal. */

@@ -91,6 +91,11 @@ function tail(show: Shown): string {
     return `/${show.what}s/${show.id}${attempt}`;
 }
 
+/** The directory of the campaign of which a run is a part. */
+export function campaignOf(run: string): string | undefined {
+    return /^campaigns\/([^/]+)\/workers\//.exec(run)?.[1];
+}
+
 export const testHref = (run: string, id: number, attempt: number | null = null) =>
     hrefOf({ at: 'run', run, show: { what: 'test', id, attempt } });
 export const fixtureHref = (run: string, id: number) =>

@@ -20,6 +20,15 @@ export function tubeOf({ name, unit }: Signal, signals: readonly Signal[]): Sign
     return signals.filter((each) => middleOf(each.name) === name && each.unit === unit);
 }
 
+/** The signals of violated monitors. */
+export function violatedSignals(
+    signals: readonly Signal[],
+    violations: readonly Violation[],
+): Signal[] {
+    const names = new Set(violations.flatMap((violation) => violation.signals));
+    return withoutTubes(signals).filter(({ name }) => names.has(name));
+}
+
 /** The signals that are no side of the tube around another one. */
 export function withoutTubes(signals: readonly Signal[]): Signal[] {
     const sides = new Set(signals.flatMap((signal) => tubeOf(signal, signals)));

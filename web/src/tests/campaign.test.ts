@@ -1,6 +1,7 @@
 import { expect, test } from 'vitest';
 import type { CampaignMap, CampaignReport } from '../generated/api';
-import { HEIGHT, drawProgress, intervalText, mapOf, mapped } from '../lib/campaign';
+import { HEIGHT, drawProgress, episodeHref, intervalText, mapOf, mapped } from '../lib/campaign';
+import { campaignOf, parseRoute } from '../lib/route';
 
 const rate = (value: number) => ({ value, low: value - 0.1, high: Math.min(1, value + 0.1) });
 const cell = (values: string, passed: number) => ({
@@ -63,4 +64,14 @@ test('the progress is inside of the plot', () => {
         '',
     );
     expect(intervalText(rate(0.5))).toBe('50.0 % (40.0 % to 60.0 %)');
+});
+
+test('an episode has the address of its run, and that leads to the campaign', () => {
+    const run = 'campaigns/grasp 1/workers/2/2026';
+    const place = parseRoute(episodeHref({ run, test: 3, attempt: 7 }));
+    expect(place).toEqual({ at: 'run', run, show: { what: 'test', id: 3, attempt: 7 } });
+    const overview = parseRoute(episodeHref({ run }));
+    expect(overview).toEqual({ at: 'run', run, show: { what: 'overview' } });
+    expect(campaignOf(run)).toBe('grasp 1');
+    expect(campaignOf('2026')).toBeUndefined();
 });

@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { AttachmentEntry, Signal } from '../lib/api-types';
 import { grouped } from '../lib/pictures';
-import { tubeOf, withoutTubes } from '../lib/signals';
+import { tubeOf, violatedSignals, withoutTubes } from '../lib/signals';
 
 function signal(name: string, unit = 'rad'): Signal {
     return { name, unit, count: 0, outside: 0, times: [], values: [] };
@@ -29,6 +29,15 @@ describe('sides of tubes', () => {
 
     it('are signals of their own without it, or with another unit', () => {
         expect(withoutTubes(all)).toEqual([all[0], all[4], all[5]]);
+    });
+});
+
+describe('signals of violated monitors', () => {
+    it('are those that a violation names, without sides of tubes', () => {
+        const all = [signal('a'), signal('trajectory/a/low'), signal('b')];
+        const violation = { start: 0, end: 1, signals: ['a', 'trajectory/a/low', 'x'], text: '' };
+        expect(names(violatedSignals(all, [violation]))).toEqual(['a']);
+        expect(violatedSignals(all, [])).toEqual([]);
     });
 });
 

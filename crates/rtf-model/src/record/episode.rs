@@ -1,7 +1,7 @@
 //! The episodes of a campaign, and their results.
 
-use super::{Record, TestRecord};
-use crate::{Episode, EpisodeStarted, EventKind, Measurement, Micros, SuiteId, Verdict};
+use super::{AttemptRecord, Record, TestRecord};
+use crate::{Episode, EpisodeStarted, EventKind, Measurement, Micros, SuiteId, TestId, Verdict};
 
 /// The result of one execution of an episode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -48,6 +48,15 @@ struct Before {
     fixtures: Vec<(usize, usize)>,
     /// The problems of each hook.
     hooks: Vec<usize>,
+}
+
+/// The attempt of a test that did not pass in an episode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct ProblemTest {
+    /// The test.
+    pub test: TestId,
+    /// Its attempt, of all in the run, from 1.
+    pub attempt: u32,
 }
 
 impl Record {
@@ -137,6 +146,28 @@ impl Record {
             }
         }
         found
+    }
+
+    /// The test because of which the newest episode of a suite did not pass: the first one with the
+    /// worst result. `None` if no test is the reason.
+    #[must_use]
+    pub fn episode_problem(&self, suite: SuiteId) -> Option<ProblemTest> {
+        let suite = self.suites.get(suite.index())?;
+        let episode = suite.episodes.last()?;
+        let tests = suite.tests.iter().filter_map(|id| self.tests.get(id.index()));
+        let parts = tests.zip(&episode.before.attempts).map(|(test, first)| (test, *first));
+        let problems = parts.filter_map(|(test, first)| {
+            let part = test.since(first);
+            let (outcome, _) = self.problem_of(&part)?;
+            let is_problem =
+                |attempt: &AttemptRecord| attempt.verdict().is_some_and(Verdict::is_problem);
+            let at = part.attempts.iter().rposition(is_problem);
+            let at = first + at.unwrap_or(part.attempts.len() - 1);
+            let attempt = u32::try_from(at).ok()?.checked_add(1)?;
+            Some((outcome as u8, ProblemTest { test: test.plan.test, attempt }))
+        });
+        let problems: Vec<_> = problems.collect();
+        problems.into_iter().rev().max_by_key(|(severity, _)| *severity).map(|(_, it)| it)
     }
 
     fn fixture_problems_since(

@@ -149,6 +149,10 @@ pub async fn rerun(State(app): State<App>, At(run): At<String>) -> ControlResult
 }
 
 fn start(run: &Run, runs: &Runs, starter: &dyn RunStarter) -> ControlResult {
+    if run.is_of_worker() {
+        return Err(Problem::conflict("the run is a part of a campaign")
+            .hint("the page of the campaign has the commands that repeat its episodes"));
+    }
     let folder = {
         let index = run.read()?;
         if !index.state().is_over() {

@@ -121,6 +121,7 @@ pub async fn test(
         let test = entry(&record.tests, test, "test")?;
         let commands = commands();
         let command = (commands.rerun)(record, test.plan.test, None);
+        let command = command.filter(|_| !run.is_of_worker());
         // It is for the working directory of the run, which is not the server's.
         let dir = std::path::absolute(run.dir()).unwrap_or_else(|_| run.dir());
         let replay = index.replay_command(&commands.replay, test, &dir);

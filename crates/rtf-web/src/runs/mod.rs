@@ -48,6 +48,12 @@ impl Run {
         self.results.join(&self.name)
     }
 
+    /// Whether a worker of a campaign made it: its tests run again with the command of an episode.
+    #[must_use]
+    pub fn is_of_worker(&self) -> bool {
+        is_of_worker(&self.name)
+    }
+
     /// Its index, read as far as the journal is written. Takes as long as that
     /// takes: not to be called from the threads that serve.
     ///
@@ -161,9 +167,10 @@ impl Runs {
         linked.filter(|name| self.is_run(name)).or_else(|| self.names().into_iter().next())
     }
 
-    /// Whether there is a run of this name.
+    /// Whether there is a run of this name, also of the worker of a campaign.
     fn is_run(&self, name: &str) -> bool {
-        name != LATEST && is_plain(name) && regular_file::is_file(&self.results, &journal_of(name))
+        let is_named = (name != LATEST && is_plain(name)) || is_of_worker(name);
+        is_named && regular_file::is_file(&self.results, &journal_of(name))
     }
 
     /// The names of all runs, the newest first.
@@ -186,6 +193,17 @@ pub fn unreadable(error: io::Error) -> Problem {
     Problem::unreadable(Path::new(JOURNAL), &error)
 }
 
+/// Whether this is the name of a run of a worker: `campaigns/NAME/workers/N/RUN`.
+fn is_of_worker(name: &str) -> bool {
+    let parts: Vec<_> = name.split('/').collect();
+    let [campaigns, campaign, workers, worker, run] = parts[..] else { return false };
+    campaigns == "campaigns"
+        && workers == "workers"
+        && is_plain(campaign)
+        && worker.parse::<u32>().is_ok()
+        && is_plain(run)
+}
+
 /// Whether this is a valid name of a run's directory in the results directory.
 fn is_plain(name: &str) -> bool {
     !name.is_empty() && !name.starts_with('.') && !name.contains(['/', '\\', '\0'])
@@ -194,6 +212,29 @@ fn is_plain(name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn runs_of_workers_are_found_but_not_listed() {
+        let results = tempfile::tempdir().unwrap();
+        let of_worker = "campaigns/grasp/workers/2/1";
+        for name in ["1", of_worker, "campaigns/grasp/2", "other/grasp/workers/2/1"] {
+            fs::create_dir_all(results.path().join(name)).unwrap();
+            fs::write(results.path().join(name).join(JOURNAL), "").unwrap();
+        }
+        let runs = Runs::new(results.path(), None);
+        assert_eq!(runs.find(of_worker).unwrap().name, of_worker);
+        assert_eq!(runs.names(), ["1"]);
+        for other in [
+            "campaigns/grasp/2",
+            "other/grasp/workers/2/1",
+            "campaigns/../grasp/workers/2/1",
+            "campaigns/grasp/workers/2/../2/1",
+            "campaigns/grasp/workers/x/1",
+            "/campaigns/grasp/workers/2/1",
+        ] {
+            assert!(runs.find(other).is_err(), "{other}");
+        }
+    }
 
     #[test]
     fn the_newest_run_is_read_ahead() {

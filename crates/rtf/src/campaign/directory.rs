@@ -229,18 +229,27 @@ impl CampaignDir {
 
     /// The results of all workers so far, the first worker first.
     pub fn recorded(&self) -> Vec<EpisodeLine> {
-        self.workers().into_iter().flat_map(|worker| self.recorded_by(worker)).collect()
+        self.recorded_in_runs().into_iter().map(|(_, line)| line).collect()
+    }
+
+    /// The results of all workers so far, each with the directory of its run.
+    pub fn recorded_in_runs(&self) -> Vec<(PathBuf, EpisodeLine)> {
+        self.workers().into_iter().flat_map(|worker| self.lines_of(worker)).collect()
     }
 
     /// The results of a worker so far, the first one of each episode.
     pub fn recorded_by(&self, worker: u32) -> Vec<EpisodeLine> {
+        self.lines_of(worker).into_iter().map(|(_, line)| line).collect()
+    }
+
+    fn lines_of(&self, worker: u32) -> Vec<(PathBuf, EpisodeLine)> {
         let mut known = BTreeSet::new();
         let mut lines = Vec::new();
-        let files = self.runs(worker).into_iter().map(|run| run.join(EPISODE_RESULTS));
-        for text in files.filter_map(|file| fs::read_to_string(file).ok()) {
+        for run in self.runs(worker) {
+            let Ok(text) = fs::read_to_string(run.join(EPISODE_RESULTS)) else { continue };
             let parsed = text.lines().filter_map(|line| serde_json::from_str(line).ok());
             let is_new = |line: &EpisodeLine| line.outcome.is_some() && known.insert(line.episode);
-            lines.extend(parsed.filter(is_new));
+            lines.extend(parsed.filter(is_new).map(|line| (run.clone(), line)));
         }
         lines
     }

@@ -1,20 +1,24 @@
 //! The results of a campaign for the page and the HTML report, from its directory only.
 
+use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use rtf_campaign::analysis::{self, ByParameter, Cell, Sample};
+use rtf_campaign::forecast::forecast_text;
 use rtf_campaign::{EpisodeResult, Judge, Ledger, Verdict};
-use rtf_model::{Episode, EpisodeOutcome};
+use rtf_model::{Episode, EpisodeOutcome, ProblemTest};
 use rtf_web::{
     CampaignCell, CampaignMap, CampaignMapRow, CampaignParameter, CampaignProgress, CampaignReport,
-    CampaignSource, EpisodeProblem,
+    CampaignSource, EpisodeProblem, EpisodeRun,
 };
 
 use super::directory::{CampaignDir, DESCRIPTION};
 use super::judged::Judged;
 use crate::error::Failure;
 
+/// The directory of campaigns in a results directory.
+const CAMPAIGNS: &str = "campaigns";
 /// The number of points of the progress.
 const PROGRESS: usize = 60;
 /// The number of parameters in maps.
@@ -33,7 +37,7 @@ impl CampaignSource for ServedCampaigns {
     fn report(&self, directory: &str) -> Result<Option<CampaignReport>, String> {
         // Only a name: not a path to elsewhere.
         let is_name = Path::new(directory).file_name().is_some_and(|name| name == directory);
-        let path = self.results.join("campaigns").join(directory);
+        let path = self.results.join(CAMPAIGNS).join(directory);
         if !is_name || !path.join(DESCRIPTION).is_file() {
             return Ok(None);
         }
@@ -50,8 +54,10 @@ pub fn report(dir: &CampaignDir) -> Result<CampaignReport, Failure> {
     })?;
     let episodes = dir.episodes()?.episodes;
     let mut ledger = Ledger::new(episodes.len(), dir.description.repeats);
-    for line in dir.recorded() {
+    let mut runs = HashMap::new();
+    for (run, line) in dir.recorded_in_runs() {
         if let Some(outcome) = line.outcome {
+            runs.insert(line.episode, episode_run(&dir.path, &run, line.problem));
             ledger.record(line.episode, outcome, line.reason);
         }
     }
@@ -61,7 +67,7 @@ pub fn report(dir: &CampaignDir) -> Result<CampaignReport, Failure> {
     let judgement = judge.judge(&results);
     let samples = analysis::samples(&episodes, &ledger);
     let parameters = analysis::by_parameters(&samples, start.seed);
-    let mut problems = problems(dir, &episodes, &ledger);
+    let mut problems = problems(dir, &episodes, (&ledger, &runs));
     let problem_count = problems.len();
     problems.truncate(LISTED);
     Ok(CampaignReport {
@@ -80,6 +86,8 @@ pub fn report(dir: &CampaignDir) -> Result<CampaignReport, Failure> {
         failed: judgement.failed,
         without_result: judgement.without_result,
         rate: judgement.rate,
+        more_episodes: judge.more_episodes(&judgement),
+        forecast: forecast_text(&judge, &judgement),
         progress: progress(&judge, &results[..judgement.episodes.min(results.len())]),
         maps: maps(&samples, &parameters),
         parameters: parameters.into_iter().map(parameter).collect(),
@@ -140,7 +148,22 @@ fn maps(samples: &[Sample<'_>], parameters: &[ByParameter]) -> Vec<CampaignMap> 
     maps
 }
 
-fn problems(dir: &CampaignDir, episodes: &[Episode], ledger: &Ledger) -> Vec<EpisodeProblem> {
+/// The last run of an episode, as the server names it: relative to the results directory.
+fn episode_run(campaign: &Path, run: &Path, problem: Option<ProblemTest>) -> EpisodeRun {
+    let inside = run.strip_prefix(campaign).unwrap_or(run);
+    let run = Path::new(CAMPAIGNS).join(directory_name(campaign)).join(inside);
+    EpisodeRun {
+        run: run.to_string_lossy().into_owned(),
+        test: problem.map(|problem| problem.test.0),
+        attempt: problem.map(|problem| problem.attempt),
+    }
+}
+
+fn problems(
+    dir: &CampaignDir,
+    episodes: &[Episode],
+    (ledger, runs): (&Ledger, &HashMap<u64, EpisodeRun>),
+) -> Vec<EpisodeProblem> {
     let path = dir.path.with_file_name(directory_name(&dir.path));
     let path = path.to_string_lossy();
     let problem = |(episode, executions): (&Episode, &rtf_campaign::ledger::Executions)| {
@@ -158,6 +181,7 @@ fn problems(dir: &CampaignDir, episodes: &[Episode], ledger: &Ledger) -> Vec<Epi
             reason,
             parameters: episode.parameters.iter().map(pair).collect(),
             command: format!("rtf run --episode {} {}", episode.id, shell_words::quote(&path)),
+            run: runs.get(&episode.id).cloned(),
         })
     };
     let with_results = episodes.iter().zip(ledger.episodes());

@@ -49,6 +49,7 @@ pub fn run(args: &CampaignShowArgs, matches: &ArgMatches) -> VerbResult {
             "failed": count(EpisodeResult::Failed),
             "without_result": count(EpisodeResult::None),
             "judgement": judgement,
+            "more_episodes": judge.more_episodes(&judgement),
             "parameters": parameters,
             "map": map,
         });

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use rtf_campaign::file::StoppingRule;
-use rtf_campaign::{Campaign, EpisodeResult, Judgement, Ledger, Verdict};
+use rtf_campaign::forecast::forecast_text;
+use rtf_campaign::{Campaign, EpisodeResult, Judge, Judgement, Ledger, Verdict};
 use rtf_report::episode_results::EpisodeLine;
 
 use crate::diagnostics::count;
@@ -82,6 +83,10 @@ pub fn print(
                 writeln!(out, "  decided after {}", count(judgement.episodes, "episode"))?;
             }
             None => {}
+        }
+        let judge = Judge::new(campaign, total);
+        if let Some(text) = judge.and_then(|judge| forecast_text(&judge, judgement)) {
+            writeln!(out, "  {text}")?;
         }
         writeln!(out, "results: {}", dir.display())?;
         let claimed = campaign.claim.rate;
