@@ -111,10 +111,17 @@ pub fn forecast_text(judge: &Judge, judgement: &Judgement) -> Option<String> {
         None => format!("{needs} more than {MAX_FORECAST} more episodes at the present rate"),
         Some(1) => format!("{needs} about 1 more episode at the present rate"),
         Some(more) => {
-            let all = more + known + judgement.without_result;
+            let all = rounded(more + known + judgement.without_result);
+            let more = rounded(more);
             format!("{needs} about {more} more episodes at the present rate, {all} in all")
         }
     })
+}
+
+/// The number with two digits that count.
+fn rounded(number: u64) -> u64 {
+    let step = 10_u64.pow(number.checked_ilog10().unwrap_or_default().saturating_sub(1));
+    (number + step / 2) / step * step
 }
 
 #[cfg(test)]
@@ -202,6 +209,12 @@ mod tests {
         assert_eq!(judge.more_episodes(&same), None);
         let text = forecast_text(&judge, &same).expect("undecided");
         assert!(text.contains("more than 50000 more episodes"), "{text}");
+    }
+
+    #[test]
+    fn numbers_in_texts_are_rounded() {
+        let found = [0, 7, 42, 99, 104, 105, 2198, 2258, 49_999].map(rounded);
+        assert_eq!(found, [0, 7, 42, 99, 100, 110, 2200, 2300, 50_000]);
     }
 
     #[test]

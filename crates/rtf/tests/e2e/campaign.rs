@@ -58,7 +58,7 @@ fn a_claim_holds_or_not_or_needs_more_episodes() {
         assert_eq!(finished.code, Some(code), "{}{}", finished.stdout, finished.stderr);
         let expected = format!("claim rate >= {rate}: {verdict}\n");
         assert!(finished.stdout.ends_with(&expected), "{}", finished.stdout);
-        let forecast = finished.stdout.contains("  a decision needs about ");
+        let forecast = finished.stdout.contains("  a decision needs ");
         assert_eq!(forecast, verdict == "undecided", "{}", finished.stdout);
         assert!(nothing_left(&folder));
     }
