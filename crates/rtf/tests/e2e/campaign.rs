@@ -82,6 +82,7 @@ fn what_is_printed() {
       passed            2
       failed            2
       rate 0.5000, between 0.0976 and 0.9024 (Clopper and Pearson, 90 % confidence)
+      a decision needs about 2 more episodes at the present rate, 6 in all
     results: rtf-results/campaigns/[RUN]
     claim rate >= 0.9: undecided
     ----- stderr
@@ -262,6 +263,7 @@ fn the_results_show_where_a_campaign_fails() {
       passed            2
       failed            2
       rate 0.5000, between 0.0976 and 0.9024 (Clopper and Pearson, 90 % confidence)
+      a decision needs about 2 more episodes at the present rate, 6 in all
     results: rtf-results/campaigns/latest
     claim rate >= 0.9: undecided
 
