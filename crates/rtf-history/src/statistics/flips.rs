@@ -72,7 +72,6 @@ pub struct Flips {
     pub bench_rate: Option<Rate>,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
 fn is_zero(count: &u64) -> bool {
     *count == 0
 }

@@ -52,6 +52,8 @@ pub fn report(dir: &CampaignDir) -> Result<CampaignReport, Failure> {
         let error = format!("`{}` has no campaign with a claim", dir.path.display());
         Failure::input(error).hint("it is a search, or was run by an earlier version of rtf")
     })?;
+    // Before the results: those of a worker that has ended are complete.
+    let running = Judged::read(&dir.path).is_none() && dir.any_worker_runs();
     let episodes = dir.episodes()?.episodes;
     let mut ledger = Ledger::new(episodes.len(), dir.description.repeats);
     let mut runs = HashMap::new();
@@ -75,7 +77,7 @@ pub fn report(dir: &CampaignDir) -> Result<CampaignReport, Failure> {
         name: dir.description.name.clone(),
         file: dir.description.file.display().to_string(),
         started: start.started_at,
-        running: Judged::read(&dir.path).is_none() && dir.any_worker_runs(),
+        running,
         commit: start.revision.as_ref().map(|revision| revision.commit.clone()),
         claim: start.claim,
         rule: start.rule().to_owned(),

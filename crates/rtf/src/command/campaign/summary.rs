@@ -1,6 +1,7 @@
 //! What `rtf campaign run` prints at the end, and the exit code.
 
 use std::collections::BTreeMap;
+use std::io::{self, Write};
 use std::path::Path;
 
 use rtf_campaign::file::StoppingRule;
@@ -62,28 +63,7 @@ pub fn print(
                 "  rate {value:.4}, between {low:.4} and {high:.4} ({interval}, {confidence})"
             )?;
         }
-        match early_end {
-            Some(EarlyEnd::HookFailed) => {
-                writeln!(out, "  a hook failed: the robot may not be in a safe state")?;
-            }
-            Some(EarlyEnd::BenchBroken) => writeln!(
-                out,
-                "  ended early: {} in succession were errors or collapses of the bench",
-                count(rtf_campaign::ledger::MAX_BENCH_RESULTS as usize, "execution"),
-            )?,
-            Some(EarlyEnd::Budget) => {
-                let budget = campaign.budget.unwrap_or_default();
-                writeln!(out, "  ended early: the budget of {budget:?} has passed")?;
-                writeln!(out, "  continue: rtf campaign run --resume {}", dir.display())?;
-            }
-            Some(EarlyEnd::Signal(_)) => {
-                writeln!(out, "  continue: rtf campaign run --resume {}", dir.display())?;
-            }
-            None if judgement.episodes < total && judgement.verdict != Verdict::Undecided => {
-                writeln!(out, "  decided after {}", count(judgement.episodes, "episode"))?;
-            }
-            None => {}
-        }
+        write_end(out, campaign, (total, judgement), early_end, dir)?;
         let judge = Judge::new(campaign, total);
         if let Some(text) = judge.and_then(|judge| forecast_text(&judge, judgement)) {
             writeln!(out, "  {text}")?;
@@ -92,6 +72,39 @@ pub fn print(
         let claimed = campaign.claim.rate;
         writeln!(out, "claim rate >= {claimed}: {color}{verdict}\u{1b}[0m")
     })
+}
+
+/// Writes why a campaign ended before all of its episodes had run.
+fn write_end(
+    out: &mut dyn Write,
+    campaign: &Campaign,
+    (total, judgement): (usize, &Judgement),
+    early_end: Option<&EarlyEnd>,
+    dir: &Path,
+) -> io::Result<()> {
+    match early_end {
+        Some(EarlyEnd::HookFailed) => {
+            writeln!(out, "  a hook failed: the robot may not be in a safe state")?;
+        }
+        Some(EarlyEnd::BenchBroken) => writeln!(
+            out,
+            "  ended early: {} in succession were errors or collapses of the bench",
+            count(rtf_campaign::ledger::MAX_BENCH_RESULTS as usize, "execution"),
+        )?,
+        Some(EarlyEnd::Budget) => {
+            let budget = campaign.budget.unwrap_or_default();
+            writeln!(out, "  ended early: the budget of {budget:?} has passed")?;
+            writeln!(out, "  continue: rtf campaign run --resume {}", dir.display())?;
+        }
+        Some(EarlyEnd::Signal(_)) => {
+            writeln!(out, "  continue: rtf campaign run --resume {}", dir.display())?;
+        }
+        None if judgement.episodes < total && judgement.verdict != Verdict::Undecided => {
+            writeln!(out, "  decided after {}", count(judgement.episodes, "episode"))?;
+        }
+        None => {}
+    }
+    Ok(())
 }
 
 fn interval(campaign: &Campaign) -> (&'static str, String) {
