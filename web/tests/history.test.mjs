@@ -97,7 +97,8 @@ test('lists, comparisons and filters have addresses', async () => {
     await rows.nth(5).waitFor({ state: 'detached' });
     assert.match(page.url(), /filter=name/);
     await page.getByRole('link', { name: 'Flaky' }).click();
-    await guarded.see('No test both passed and failed on one commit or in one run.');
+    await guarded.see('No test both passed and failed on one commit, with equal sources, or');
+    await guarded.see('without a commit or with uncommitted changes: 3 runs.');
     const [first, second] = await bench.names();
     await page.evaluate((to) => (location.hash = to), `#/history/compare?a=${first}&b=${second}`);
     await guarded.see('Also tests without differences');
