@@ -132,7 +132,7 @@ mod tests {
     use crate::EpisodeResult;
     use crate::file::StoppingRule;
 
-    const RUNS: usize = 2001;
+    const RUNS: usize = 601;
 
     fn results(passed: usize, failed: usize) -> Vec<EpisodeResult> {
         let mut results = vec![EpisodeResult::Passed; passed + failed];
@@ -179,7 +179,7 @@ mod tests {
             let rate = passed as f64 / (passed + failed) as f64;
             let median = simulated(&judge, &start, rate);
             let error = (found as f64 - median as f64).abs();
-            assert!(error <= 2.0 + 0.08 * median as f64, "{rule:?}: {found}, simulated {median}");
+            assert!(error <= 2.0 + 0.1 * median as f64, "{rule:?}: {found}, simulated {median}");
         }
     }
 
