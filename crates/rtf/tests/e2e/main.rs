@@ -44,6 +44,7 @@ mod guard;
 mod history;
 mod history_campaigns;
 mod history_failures;
+mod history_flaky;
 mod history_gate;
 mod history_order;
 mod hooks;
