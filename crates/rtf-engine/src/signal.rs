@@ -56,7 +56,7 @@ pub async fn forward(
                 if requests.count() > 0 {
                     continue;
                 }
-                (0, "the guard died")
+                (0, "the death of the guard")
             }
         };
         if requests.record(std::time::Instant::now()) {

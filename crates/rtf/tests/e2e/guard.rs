@@ -178,7 +178,7 @@ fn a_killed_guard_lets_the_runner_tear_down_in_order() {
     // The runner has the same outputs: they close with its end.
     assert_eq!(running.finish().code, None);
     let journal = folder.journal();
-    assert_eq!(journal.record.interrupted(), Some("the guard died"));
+    assert_eq!(journal.record.interrupted(), Some("the death of the guard"));
     assert_eq!(journal.record.verdict(TestId(0)), Some(Verdict::Interrupted));
     assert_eq!(lines(&folder, "parked").len(), 1);
     let stopped =
