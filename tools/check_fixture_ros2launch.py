@@ -12,12 +12,18 @@ from __future__ import annotations
 import os
 import shutil
 import signal
+import subprocess
 import sys
 import tempfile
+import time
+from collections.abc import Callable
 from pathlib import Path
 
+import rclpy
 from processes import kill, running, shared_memory
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from run import Run, expect, expect_in
+from std_msgs.msg import Float64
 
 SECONDS = "--set=seconds=15"
 """How long the first test listens, in seconds: long enough to disturb it."""
@@ -32,12 +38,16 @@ def main() -> int:
         for name in ("ROS_DOMAIN_ID", "ROS_LOG_DIR"):
             os.environ.pop(name, None)
         without_ros2(rtf, suite, home / "without")
+        hidden_nodes(Path(suite).parents[3] / "fixtures")
         os.environ["PATH"] = f"{Path(suite).parent / 'bin'}:{os.environ['PATH']}"
         undisturbed(rtf, suite, home / "undisturbed")
-        collapses(rtf, suite, home / "killed", signal.SIGKILL, "talker-1 died, exit code -9")
+        killed = "talker-1 was killed by SIGKILL; its last line was: ready"
+        collapses(rtf, suite, home / "killed", signal.SIGKILL, killed)
         collapses(rtf, suite, home / "silent", signal.SIGSTOP, "no message on /chatter for 2 s")
+        required(rtf, suite, home / "required")
         launch_killed(rtf, suite, home / "launch-killed")
-        dies_early(rtf, suite, home / "early")
+        broken(rtf, suite, home)
+        crashes_at_the_end(rtf, suite, home)
         expect("nodes left", running("talker.py"), [])
         expect("shared memory left", shared_memory() - before, set())
     return 0
@@ -54,9 +64,60 @@ def without_ros2(rtf: str, suite: str, directory: Path) -> None:
     expect_in("https://docs.ros.org", told)
 
 
+def hidden_nodes(fixtures: Path) -> None:
+    """A program of signals hears what was published before, and leaves the graph at its end."""
+    settings = {"ROS_DOMAIN_ID": "97", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    os.environ.update(settings)
+    rclpy.init()
+    try:
+        observer = rclpy.create_node("observer")
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        publisher = observer.create_publisher(Float64, "/level", latched)
+        publisher.publish(Float64(data=0.5))
+        with subprocess.Popen(
+            [sys.executable, fixtures / "rtf_fixtures/ros2_signals.py", "/level.data"],
+            stdout=subprocess.PIPE,
+            text=True,
+        ) as signals:
+            assert signals.stdout is not None
+            expect("the value", signals.stdout.readline().split()[1:], ["0.5"])
+            wait_until("a node of signals", lambda: hidden(observer) != [])
+            signals.terminate()
+        # Others see a node that did not leave for 20 s.
+        wait_until("it has left", lambda: hidden(observer) == [])
+        observer.destroy_node()
+    finally:
+        rclpy.try_shutdown()
+        for name in settings:
+            del os.environ[name]
+
+
+def hidden(observer: rclpy.node.Node) -> list[str]:
+    """The nodes of rtf that a node sees."""
+    return [name for name in observer.get_node_names() if name.startswith("_rtf_")]
+
+
+def wait_until(what: str, condition: Callable[[], bool]) -> None:
+    """Wait for a condition, for at most 15 s."""
+    deadline = time.monotonic() + 15
+    while not condition():
+        if time.monotonic() > deadline:
+            raise SystemExit(f"not within 15 s: {what}")
+        time.sleep(0.05)
+    print(f"ok: {what}", flush=True)
+
+
 def undisturbed(rtf: str, suite: str, directory: Path) -> None:
-    """All tests pass, also with a process that exits successfully."""
-    run = Run(rtf, suite, directory)
+    """All tests pass, also with a process that exits successfully.
+
+    The process has the name of its node, one topic was published once, before anyone listened and
+    long before the end, and the user prefers other messages of launch.
+    """
+    options = "--process speaker --topic /description --topic /chatter --silence 2"
+    os.environ["OVERRIDE_LAUNCH_SCREEN_FORMAT"] = "{name} ({levelname}) \\x1b[31m{msg}\\x1b[0m"
+    file = "--set=file=named.launch.xml"
+    run = Run(rtf, suite, directory, file, f"--set=options={options}", "--set=seconds=4")
+    del os.environ["OVERRIDE_LAUNCH_SCREEN_FORMAT"]
     expect("exit code", run.wait(), 0)
     expect("verdicts", set(run.verdicts().values()), {"passed"})
     expect("nodes left", running("talker.py"), [])
@@ -83,13 +144,57 @@ def launch_killed(rtf: str, suite: str, directory: Path) -> None:
     expect("nodes left", running("talker.py"), [])
 
 
-def dies_early(rtf: str, suite: str, directory: Path) -> None:
-    """A node that dies before it is ready fails the set-up at once; its last output is shown."""
-    run = Run(rtf, suite, directory, "--set=rate=fast")
+def required(rtf: str, suite: str, directory: Path) -> None:
+    """The end of a required process shuts launch down, and is a collapse at once."""
+    run = Run(rtf, suite, directory, SECONDS, "--set=file=required.launch.xml")
+    run.collapses(lambda: kill(running("ends.py"), signal.SIGTERM))
     expect("exit code", run.wait(), 1)
-    expect_in("talker-1 died, exit code 1", run.reason("fixture-broken"))
-    told = "could not convert string to float: 'fast'" in run.output.read_text()
-    expect("last output is reported", told, True)
+    ended = "planner-2 ended with exit code 0, and launch shuts down because it was required"
+    expect("reason", run.reason(), ended)
+    expect("verdicts", list(run.verdicts().values()), ["collapsed", "passed"])
+
+
+def broken(rtf: str, suite: str, home: Path) -> None:
+    """What cannot be started fails the set-up with the line that says why, which is shown once."""
+    cause = "ValueError: could not convert string to float: 'fast'"
+    cases = {
+        "early": ("rate=fast", f"talker-1 ended with exit code 1: {cause}"),
+        "missing": (
+            "file=missing.launch.xml",
+            "driver-2 was not started: FileNotFoundError: [Errno 2] No such file or directory: "
+            "'./no-such-driver'",
+        ),
+        "component": (
+            "file=component.launch.xml",
+            "Failed to load node 'driver' of type 'arm::Driver' in container '/box': Failed to "
+            "find class with the requested plugin name.",
+        ),
+        "unnamed": (
+            "options=--process speaker --timeout 2",
+            "the start of speaker: not within 2 s (started: talker-1, calibration-2)",
+        ),
+    }
+    for name, (setting, reason) in cases.items():
+        run = Run(rtf, suite, home / name, f"--set={setting}")
+        expect("exit code", run.wait(), 1)
+        expect("reason", run.reason("fixture-broken"), f"set-up failed: {reason}")
+        first = "[INFO] [launch]: Default logging verbosity"
+        expect("the output is shown once", run.output.read_text().count(first), 1)
+
+
+def crashes_at_the_end(rtf: str, suite: str, home: Path) -> None:
+    """A process that crashes while launch shuts down is a problem of the tear-down."""
+    file = "--set=file=crash.launch.xml"
+    run = Run(rtf, suite, home / "crashes", file)
+    expect("exit code", run.wait(), 1)
+    expect("verdicts", set(run.verdicts().values()), {"passed"})
+    (stopped,) = run.events("fixture-stopped")
+    shut = "while launch shut down, "
+    expect_in(f"{shut}driver-2 was killed by SIGSEGV: it ends with SIGSEGV", stopped["problem"])
+    expect_in(f"{shut}logger-3 ended with exit code 7: it ends with 7", stopped["problem"])
+    options = "--set=options=--process talker --may-die gripper --may-die logger"
+    run = Run(rtf, suite, home / "may-crash", file, options)
+    expect("exit code", run.wait(), 0)
 
 
 if __name__ == "__main__":
