@@ -164,9 +164,9 @@ impl Program {
             return Ok(());
         }
         let clock = recorder.clock().description();
+        let hint = &recorder.settings().programs[self.index].other_clock;
         let what = format!(
-            "wrote the time {written}, but its times have to be {clock} (now {now:.3}); `time=\"own\"` \
-             in the suite is for another clock"
+            "wrote the time {written}, but its times have to be {clock} (now {now:.3}); {hint}"
         );
         Err(self.describe(recorder, &what))
     }

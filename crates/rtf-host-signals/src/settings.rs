@@ -24,6 +24,8 @@ pub(crate) struct ProgramSettings {
     pub time: SignalTime,
     /// Whether set-up waits for its first line.
     pub wait: bool,
+    /// What helps if its times are those of another clock.
+    pub other_clock: String,
 }
 
 /// A quantity of a fixture's processes.
@@ -97,6 +99,7 @@ impl Settings {
                         count: program.signals.len(),
                         time: program.time,
                         wait: program.wait,
+                        other_clock: program.other_clock,
                     });
                     settings.signals.extend(program.signals);
                 }

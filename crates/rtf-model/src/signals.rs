@@ -70,6 +70,8 @@ pub struct SignalProgram {
     pub time: SignalTime,
     /// Whether the first test waits for its first line.
     pub wait: bool,
+    /// What helps if its times are those of another clock, as a clause.
+    pub other_clock: String,
 }
 
 /// A signal.

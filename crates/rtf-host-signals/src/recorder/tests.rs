@@ -36,8 +36,14 @@ fn monitor(name: &str, formula: &str, tests: Option<&str>) -> Arc<MonitorSetting
 impl Bench {
     fn new(time: SignalTime, monitors: Vec<Arc<MonitorSettings>>) -> Self {
         let signal = |name: &str| SignalConfig { name: name.to_owned(), unit: String::new() };
-        let (words, first_signal, count, wait) = (Vec::new(), 0, 2, true);
-        let program = ProgramSettings { words, first_signal, count, time, wait };
+        let program = ProgramSettings {
+            words: Vec::new(),
+            first_signal: 0,
+            count: 2,
+            time,
+            wait: true,
+            other_clock: String::new(),
+        };
         let settings = Settings {
             signals: vec![signal("q"), signal("limit")],
             programs: vec![program],

@@ -152,9 +152,25 @@ impl SourcePlanner<'_, '_, '_> {
             signals: signals.into_iter().map(config_of).collect(),
             time: SignalTime::Clock,
             wait: true,
+            other_clock: self.clock_of_topics(wanted),
         });
         args.append(&mut words);
         Some(source)
+    }
+
+    /// What helps if the messages of a middleware have times of another clock.
+    fn clock_of_topics(&self, middleware: SignalMiddleware) -> String {
+        match (self.declared.has_clock, middleware) {
+            (false, _) => {
+                let name = SignalMiddleware::ALL.iter().find(|(_, one)| *one == middleware);
+                let name = name.map_or("", |(name, _)| name);
+                format!("`clock=\"{name}\"` in `<suite>` is for simulated times")
+            }
+            (true, SignalMiddleware::Yarp) => "the sender has to use the simulated time".into(),
+            (true, SignalMiddleware::Ros | SignalMiddleware::Ros2) => {
+                "its node has to use the simulated time (`use_sim_time`)".into()
+            }
+        }
     }
 
     /// One program for each file.
@@ -221,8 +237,13 @@ impl SourcePlanner<'_, '_, '_> {
                 let (scope, problems) = (self.planner.scope(), &mut self.planner.context.problems);
                 let words = program::command(command.clone(), &scope, self.source, problems);
                 let signals = declared.signals.iter().map(config_of).collect();
-                let program =
-                    SignalProgram { words: words.len(), signals, time: *time, wait: *wait };
+                let program = SignalProgram {
+                    words: words.len(),
+                    signals,
+                    time: *time,
+                    wait: *wait,
+                    other_clock: "`time=\"own\"` in the suite is for another clock".to_owned(),
+                };
                 args.extend(words);
                 Some(SignalSource::Program(program))
             }

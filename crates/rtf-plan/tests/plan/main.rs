@@ -9,6 +9,7 @@ mod envelopes;
 mod faults;
 mod fixture_values;
 mod frameworks;
+mod hints;
 mod hooks;
 mod inputs;
 mod isolation;

@@ -20,7 +20,7 @@ fn bench() -> Bench {
 
 const SIMULATOR: &str = "<fixture type='process' name='sim'><command>./sim</command></fixture>";
 
-fn signals(plan: &Plan) -> (&PluginPlan, SignalsConfig) {
+pub fn signals(plan: &Plan) -> (&PluginPlan, SignalsConfig) {
     let fixture = plan.suites[0].fixtures.last().unwrap();
     let FixtureBody::Plugin(plugin) = &fixture.body else { panic!("no plug-in") };
     (plugin, serde_json::from_str(&plugin.param).unwrap())
