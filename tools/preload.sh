@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Builds the libraries that rtf preloads into programs of other frameworks:
-# librtf-fork-server.so, and librtf-cppunit.so. Without CppUnit's headers or a C++ compiler,
-# prints a note and does not build the latter.
+# librtf-fork-server.so, librtf-report.so, and librtf-cppunit.so. Without CppUnit's headers or a C++ compiler,
+# prints a note and does not build the last one.
 #
-#   tools/preload.sh [DIRECTORY [LIBRARY]]     default: build, both; fork_server or cppunit
+#   tools/preload.sh [DIRECTORY [LIBRARY]]     default: build, all; fork_server, report or cppunit
 #
 # CC, CXX and OBJCOPY may be those for another processor; CC may have options.
 
@@ -23,12 +23,21 @@ is_outdated() {
   [ ! -e "$library" ] || [ -n "$(find "$@" -newer "$library" -name '*.[ch]*')" ]
 }
 
-build_fork_server() {
-  local library=$directory/librtf-fork-server.so
-  is_outdated "$library" $sources/fork_server.c || return 0
+# A library in C: its name, its source.
+build_c() {
+  local library=$directory/librtf-$1.so
+  is_outdated "$library" "$sources/$2" $sources/*.h || return 0
   "${cc[@]}" -std=gnu11 -O2 -g0 -fPIC -fvisibility=hidden -Wall -Wextra -Wpedantic -Werror -shared -s \
-    $sources/fork_server.c -o "$work/fork-server.so" -ldl
-  mv "$work/fork-server.so" "$library" # a running program keeps the old one
+    "$sources/$2" -o "$work/$1.so" -pthread -ldl
+  mv "$work/$1.so" "$library" # a running program keeps the old one
+}
+
+build_fork_server() {
+  build_c fork-server fork_server.c
+}
+
+build_report() {
+  build_c report report.c
 }
 
 build_cppunit() {
@@ -39,7 +48,7 @@ build_cppunit() {
     say "note: librtf-cppunit.so is not built, because $compiler or CppUnit's headers are missing (libcppunit-dev)"
     return 0
   fi
-  is_outdated "$library" $sources/cppunit.cpp sdk/cpp/include/rtf || return 0
+  is_outdated "$library" $sources/cppunit.cpp $sources/*.h sdk/cpp/include/rtf || return 0
   "$compiler" "${options[@]}" -Wall -Wextra -Wpedantic -Werror -c $sources/cppunit.cpp -o "$work/cppunit.o"
   # The library is also loaded into programs without CppUnit.
   "${OBJCOPY:-objcopy}" --wildcard --weaken-symbol='_ZN7CppUnit*' --weaken-symbol='_ZNK7CppUnit*' \
@@ -48,6 +57,6 @@ build_cppunit() {
   mv "$work/cppunit.so" "$library"
 }
 
-for library in ${2:-fork_server cppunit}; do
+for library in ${2:-fork_server report cppunit}; do
   "build_$library"
 done

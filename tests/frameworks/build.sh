@@ -31,7 +31,8 @@ cpp_programs() {
   local file program
   for file in "$source"/*.cpp; do
     program=$out/$(basename "$file" .cpp)
-    if [ "$file" -nt "$program" ] || [ "$source/build.sh" -nt "$program" ]; then
+    if [ "$file" -nt "$program" ] || [ "$source/build.sh" -nt "$program" ] ||
+      [ tests/frameworks/descendants/descendants.hpp -nt "$program" ]; then
       quietly c++ -std=c++17 -g -O0 -Wall -o "$program" "$file" "$@"
     fi
   done

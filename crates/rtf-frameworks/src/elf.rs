@@ -36,6 +36,14 @@ pub fn loads_libraries(file: &Path) -> bool {
     })
 }
 
+/// Whether a program, or one that it starts, may load libraries that the environment demands: it
+/// is a script, or does so itself.
+pub fn may_load_libraries(file: &Path) -> bool {
+    let is_elf = File::open(file).ok().and_then(|file| header(&file));
+    let is_elf = is_elf.is_some_and(|header| header.starts_with(&IDENTIFICATION[..4]));
+    !is_elf || loads_libraries(file)
+}
+
 fn header(file: &File) -> Option<[u8; HEADER_BYTES]> {
     let mut header = [0; HEADER_BYTES];
     file.read_exact_at(&mut header, 0).ok()?;
@@ -74,5 +82,6 @@ mod tests {
         let script = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(script.path(), format!("#!/bin/sh\n{}", " ".repeat(100))).unwrap();
         assert!(!loads_libraries(script.path()));
+        assert!(may_load_libraries(script.path()) && may_load_libraries(Path::new("/bin/sh")));
     }
 }

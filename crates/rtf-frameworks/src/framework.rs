@@ -222,6 +222,9 @@ pub trait ReportReader {
     /// Reads output that the program wrote, which is passed on in any case.
     fn output(&mut self, _stream: OutputStream, _bytes: &[u8], _cases: &mut CaseReporter<'_>) {}
 
+    /// All output has been read that the program wrote before the report that was read.
+    fn settle(&mut self, _cases: &mut CaseReporter<'_>) {}
+
     /// Whether there are cases that the reader has not reported yet.
     fn holds_back(&self) -> bool {
         false

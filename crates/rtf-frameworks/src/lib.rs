@@ -17,6 +17,7 @@ mod last_output;
 mod listing;
 mod own_child;
 mod preload;
+mod report_dir;
 mod supervisor;
 mod utf8_pieces;
 mod wanted;

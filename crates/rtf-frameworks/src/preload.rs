@@ -13,15 +13,17 @@ pub fn library(name: &str) -> Option<PathBuf> {
     dirs.map(|dir| dir.join(name)).find(|library| library.is_file())
 }
 
-/// Has a command load a library first, before those of the user.
+/// Has a command load libraries first, before those of the user.
 ///
 /// # Errors
-/// The library cannot be copied to a path that `LD_PRELOAD` can contain.
-pub fn add(command: &mut Command, library: PathBuf, scratch: &Path) -> Result<(), String> {
-    let library = preloadable(library, scratch)?;
-    for (name, first) in
-        [("LD_PRELOAD", library.into()), ("ASAN_OPTIONS", OsString::from(ANY_ORDER))]
-    {
+/// A library cannot be copied to a path that `LD_PRELOAD` can contain.
+pub fn add(command: &mut Command, libraries: &[PathBuf], scratch: &Path) -> Result<(), String> {
+    let mut list = OsString::new();
+    for library in libraries {
+        list.push(if list.is_empty() { "" } else { ":" });
+        list.push(preloadable(library, scratch)?);
+    }
+    for (name, first) in [("LD_PRELOAD", list), ("ASAN_OPTIONS", OsString::from(ANY_ORDER))] {
         command.env(name, joined(first, name));
     }
     Ok(())
@@ -45,12 +47,12 @@ fn joined(first: OsString, variable: &str) -> OsString {
 
 /// A path of the library that `LD_PRELOAD` can contain, which separates paths with blanks and
 /// colons.
-fn preloadable(library: PathBuf, scratch: &Path) -> Result<PathBuf, String> {
+fn preloadable(library: &Path, scratch: &Path) -> Result<PathBuf, String> {
     if !library.to_string_lossy().contains([' ', ':']) {
-        return Ok(library);
+        return Ok(library.to_owned());
     }
     let copy = scratch.join(library.file_name().unwrap_or_default());
-    let copied = std::fs::copy(&library, &copy);
+    let copied = std::fs::copy(library, &copy);
     copied.map_err(|error| format!("`{}` cannot be copied: {error}", library.display()))?;
     Ok(copy)
 }

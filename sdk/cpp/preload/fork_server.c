@@ -22,6 +22,8 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include "command_line.h"
+
 // The number of the descriptor at which the supervisor is connected, and `,main` to stop before
 // `main`.
 #define SOCKET_VARIABLE "RTF_PROGRAM_FORKS"
@@ -173,6 +175,7 @@ static char **program_strings(const struct Request *request, char *string, int *
     for (long index = 0; index < arguments; ++index) {
         string = next(string);
     }
+    rtf_set_command_line(first, string);
     for (; string < end; string = next(string)) {
         // The memory of the request stays: nothing is copied.
         if (strchr(string, '=') == NULL) {

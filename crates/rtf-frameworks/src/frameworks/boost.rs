@@ -6,7 +6,7 @@
 mod list;
 mod log;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
@@ -15,6 +15,7 @@ use crate::framework::{
     Framework, Launch, ListError, OpenChannel, ReportChannel, ReportReader, TestProgram,
 };
 use crate::listing::{self, file_name};
+use crate::report_dir;
 
 /// The limit for listing the cases of a program.
 const LIST_LIMIT: Duration = Duration::from_secs(60);
@@ -83,14 +84,12 @@ impl Framework for BoostTest {
 
     fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
         let mut command = command(&launch.test.file);
-        let report = report_file(launch.scratch);
-        let _ = std::fs::remove_file(&report);
         if let OpenChannel::Descriptor(path) = &launch.channel {
             // Also messages and warnings, but not checks that held.
             command.arg(format!("--logger=XML,test_suite,{}", path.display()));
         }
         command.arg("--report_format=XML").arg("--report_level=detailed");
-        command.arg(format!("--report_sink={}", report.display()));
+        command.arg(format!("--report_sink={}", report_dir::results(launch.scratch).display()));
         for case in launch.cases.cases {
             command.arg(format!("--run_test={}", filter(&case.name)));
         }
@@ -100,7 +99,7 @@ impl Framework for BoostTest {
 
     fn reader(&self, launch: &Launch<'_>) -> Box<dyn ReportReader> {
         let case = launch.cases.cases.first().cloned().unwrap_or_default();
-        Box::new(log::Reader::new(case.name, report_file(launch.scratch)))
+        Box::new(log::Reader::new(case.name, report_dir::results_file(launch.scratch)))
     }
 
     fn needs_separate_processes(&self) -> bool {
@@ -127,10 +126,6 @@ fn command(file: &Path) -> Command {
     // Otherwise each message of the log has a colour.
     command.arg("--color_output=no");
     command
-}
-
-pub(super) fn report_file(scratch: &Path) -> PathBuf {
-    scratch.join("boost.xml")
 }
 
 /// The cases in a list; `None` if it is none.

@@ -33,7 +33,7 @@ impl Framework for CppUnit {
     fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
         let mut command = launch.test.command();
         if let Some(library) = preload::library(LIBRARY) {
-            preload::add(&mut command, library, launch.scratch)?;
+            preload::add(&mut command, &[library], launch.scratch)?;
         }
         Ok(command)
     }

@@ -11,6 +11,7 @@ use super::{boost, catch2, ctest, doctest, gtest, junit};
 use crate::case::{CaseResult, ListedCase, Selection};
 use crate::case_reporter::CaseReporter;
 use crate::framework::{Launch, OpenChannel, OutputStream, ReportReader, TestProgram};
+use crate::report_dir;
 
 /// The types whose list of cases [`count_listed`] reads.
 pub const LISTS: [&str; 6] = ["boost", "catch2", "ctest", "doctest", "gtest", "junit"];
@@ -92,8 +93,7 @@ pub fn read_report(
 /// Writes the file where the reader expects it.
 fn place(framework: &str, scratch: &Path, document: &[u8]) -> Option<()> {
     let file = match framework {
-        "boost" => boost::report_file(scratch),
-        "gtest" => gtest::report_file(scratch),
+        "boost" | "gtest" => report_dir::results_file(scratch),
         "rostest" => scratch.join("ros/test_results/rostest-fuzz.xml"),
         _ => return Some(()),
     };
@@ -107,11 +107,14 @@ fn feed(
     reporter: &mut CaseReporter<'_>,
 ) -> bool {
     for piece in written.report.chunks(written.piece) {
-        reader.output(OutputStream::Stdout, piece, reporter);
         if reader.report(piece, reporter).is_err() {
             return false;
         }
     }
+    for piece in written.report.chunks(written.piece) {
+        reader.output(OutputStream::Stdout, piece, reporter);
+    }
+    reader.settle(reporter);
     // Otherwise the size of the pieces would matter: cases are released when nothing arrives.
     if reader.holds_back() {
         reader.release(reporter);

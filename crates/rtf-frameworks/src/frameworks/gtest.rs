@@ -21,6 +21,7 @@ use crate::framework::{
     Framework, Launch, ListError, OpenChannel, ReportChannel, ReportReader, TestProgram,
 };
 use crate::listing::{self, file_name};
+use crate::report_dir;
 
 /// The limit for listing the tests of a program.
 const LIST_LIMIT: Duration = Duration::from_secs(60);
@@ -121,9 +122,7 @@ impl Framework for GoogleTest {
 
     fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
         let mut command = command(launch.test);
-        let report = report_file(launch.scratch);
-        drop(std::fs::remove_file(&report));
-        command.arg(output_flag(&report));
+        command.arg(output_flag(&report_dir::results(launch.scratch)));
         if let OpenChannel::Socket(address) = &launch.channel {
             command.arg(format!("--gtest_stream_result_to={address}"));
         }
@@ -143,7 +142,7 @@ impl Framework for GoogleTest {
     }
 
     fn reader(&self, launch: &Launch<'_>) -> Box<dyn ReportReader> {
-        let report = report_file(launch.scratch);
+        let report = report_dir::results_file(launch.scratch);
         Box::new(stream::Reader::new(launch.cases.cases, report, is_only_case(launch)))
     }
 
@@ -177,10 +176,6 @@ fn command(test: &TestProgram) -> Command {
 fn utf8(text: &str) -> String {
     let bytes: Option<Vec<u8>> = text.chars().map(|it| u8::try_from(u32::from(it)).ok()).collect();
     bytes.and_then(|bytes| String::from_utf8(bytes).ok()).unwrap_or_else(|| text.to_owned())
-}
-
-pub(super) fn report_file(scratch: &Path) -> std::path::PathBuf {
-    scratch.join("gtest.json")
 }
 
 fn output_flag(file: &Path) -> String {

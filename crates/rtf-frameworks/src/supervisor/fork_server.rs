@@ -23,7 +23,7 @@ use rustix::net::{
 };
 use rustix::process::{Pid, Signal, WaitOptions, kill_process, waitpid};
 
-use crate::{elf, own_child, preload};
+use crate::{elf, preload, report_dir};
 
 const LIBRARY: &str = "librtf-fork-server.so";
 
@@ -88,7 +88,9 @@ impl ForkServer {
     }
 
     fn spawn(mut command: Command, point: ForkPoint, scratch: &Path) -> Option<Self> {
-        preload::add(&mut command, preload::library(LIBRARY)?, scratch).ok()?;
+        let libraries = [Some(preload::library(LIBRARY)?), preload::library(report_dir::LIBRARY)];
+        let libraries: Vec<_> = libraries.into_iter().flatten().collect();
+        preload::add(&mut command, &libraries, scratch).ok()?;
         let (session, report) = (placeholder().ok()?, placeholder().ok()?);
         let flags = SocketFlags::CLOEXEC;
         let (socket, theirs) =

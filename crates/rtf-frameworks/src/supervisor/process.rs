@@ -22,8 +22,7 @@ use super::{TestRun, stack};
 use crate::case::Selection;
 use crate::case_reporter::CaseReporter;
 use crate::framework::{Garbage, Launch, OutputStream, ReportChannel, ReportReader};
-use crate::last_output::LastOutput;
-use crate::listing;
+use crate::{listing, report_dir};
 
 /// How much is read at once.
 const PIECE: usize = 64 * 1024;
@@ -108,7 +107,7 @@ fn start<'a>(
 ) -> Result<RunningProcess<'a>, String> {
     let server = test.fork_server.take();
     let report_number = server.as_ref().map(super::fork_server::ForkServer::report_number);
-    let channel = streams::open_channel(test.framework.channel(), report_number)
+    let channel = streams::open_channel(test.framework.channel(), report_number, test.scratch)
         .map_err(|error| format!("the channel for the report cannot be opened: {error}"))?;
     let launch = Launch {
         test: &test.program,
@@ -119,6 +118,7 @@ fn start<'a>(
         scratch: test.scratch,
     };
     let mut command = test.framework.command(&launch)?;
+    report_dir::prepare(&mut command, &launch, server.is_none())?;
     let (session, session_end) =
         session_socket::pair().map_err(|error| format!("the session cannot be opened: {error}"))?;
     let outputs = streams::open_outputs(test.framework, &launch)
@@ -257,7 +257,7 @@ impl RunningProcess<'_> {
         // take a processor from the program.
         let watches_session = !self.is_session_closed;
         fds.extend(watches_session.then(|| input(self.session.as_fd())));
-        fds.extend(self.source.as_ref().map(|source| input(source.as_fd())));
+        fds.extend(self.source.iter().flat_map(Source::fds).map(input));
         fds.extend(self.outputs.iter().map(|(_, file)| input(file.as_fd())));
         let limit = limit.and_then(|limit| Timespec::try_from(limit).ok());
         let ready = poll(&mut fds, limit.as_ref());
@@ -286,18 +286,8 @@ impl RunningProcess<'_> {
     }
 
     fn drain_report(&mut self, cases: &mut CaseReporter<'_>) {
-        if let Some(Source::Listener(listener)) = &self.source
-            && let Ok((stream, _)) = listener.accept()
-        {
-            self.source = stream.set_nonblocking(true).ok().map(|()| Source::Stream(stream));
-        }
-        loop {
-            let count = match &mut self.source {
-                Some(Source::File(file)) => file.read(&mut self.piece),
-                Some(Source::Stream(stream)) => stream.read(&mut self.piece),
-                Some(Source::Listener(_)) | None => return,
-            };
-            match count {
+        while let Some(source) = &mut self.source {
+            match source.read(&mut self.piece) {
                 Ok(0) => self.source = None,
                 Ok(count) => self.read_report(count, cases),
                 Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
@@ -343,5 +333,6 @@ impl RunningProcess<'_> {
                 Err(_) => drop(self.outputs.remove(index)),
             }
         }
+        self.reader.settle(cases);
     }
 }

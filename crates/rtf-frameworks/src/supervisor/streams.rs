@@ -1,13 +1,16 @@
 //! The streams of a process: where its report, its outputs and its session arrive.
 
 use std::fs::File;
+use std::io::{ErrorKind, Read};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::os::fd::{AsFd, AsRawFd as _, BorrowedFd, OwnedFd, RawFd};
+use std::path::Path;
 
 use rustix::io::FdFlags;
 use rustix::pipe::PipeFlags;
 
 use crate::framework::{Framework, Launch, OpenChannel, OutputStream, ReportChannel};
+use crate::report_dir;
 
 /// The first descriptor after the standard streams.
 const AFTER_STANDARD: RawFd = 3;
@@ -15,17 +18,95 @@ const AFTER_STANDARD: RawFd = 3;
 /// Where the report arrives.
 pub(super) enum Source {
     File(File),
-    /// The program has not connected yet.
-    Listener(TcpListener),
-    Stream(TcpStream),
+    Socket(ReportSocket),
 }
 
-impl AsFd for Source {
-    fn as_fd(&self) -> BorrowedFd<'_> {
+impl Source {
+    /// The descriptors at which something can arrive.
+    pub(super) fn fds(&self) -> Vec<BorrowedFd<'_>> {
         match self {
-            Self::File(file) => file.as_fd(),
-            Self::Listener(listener) => listener.as_fd(),
-            Self::Stream(stream) => stream.as_fd(),
+            Self::File(file) => vec![file.as_fd()],
+            Self::Socket(socket) => socket.fds(),
+        }
+    }
+}
+
+impl Read for Source {
+    fn read(&mut self, piece: &mut [u8]) -> std::io::Result<usize> {
+        match self {
+            Self::File(file) => file.read(piece),
+            Self::Socket(socket) => socket.read(piece),
+        }
+    }
+}
+
+/// The socket to which a program connects. Only its first connection is the report: processes
+/// that execute the program again connect, too, and end if nobody listens.
+pub(super) struct ReportSocket {
+    listener: TcpListener,
+    /// The first connection, also after its end.
+    report: Option<TcpStream>,
+    has_ended: bool,
+    others: Vec<TcpStream>,
+}
+
+impl ReportSocket {
+    fn listen() -> std::io::Result<Self> {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))?;
+        listener.set_nonblocking(true)?;
+        Ok(Self { listener, report: None, has_ended: false, others: Vec::new() })
+    }
+
+    fn fds(&self) -> Vec<BorrowedFd<'_>> {
+        let report = self.report.as_ref().filter(|_| !self.has_ended);
+        let streams = report.into_iter().chain(&self.others).map(AsFd::as_fd);
+        std::iter::once(self.listener.as_fd()).chain(streams).collect()
+    }
+
+    fn accept(&mut self) {
+        while let Ok((stream, _)) = self.listener.accept() {
+            if stream.set_nonblocking(true).is_err() {
+                continue;
+            }
+            match self.report {
+                None => self.report = Some(stream),
+                Some(_) => self.others.push(stream),
+            }
+        }
+    }
+
+    /// Reads what other processes send: they would wait if nobody did.
+    fn discard_others(&mut self, piece: &mut [u8]) {
+        self.others.retain_mut(|stream| {
+            loop {
+                match stream.read(piece) {
+                    Ok(0) => return false,
+                    Ok(_) => {}
+                    Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                    Err(error) => return error.kind() == ErrorKind::WouldBlock,
+                }
+            }
+        });
+    }
+
+    /// Reads from the report; it would block after its end, because others may connect.
+    fn read(&mut self, piece: &mut [u8]) -> std::io::Result<usize> {
+        self.accept();
+        self.discard_others(piece);
+        let Some(report) = self.report.as_mut().filter(|_| !self.has_ended) else {
+            return Err(ErrorKind::WouldBlock.into());
+        };
+        match report.read(piece) {
+            Err(error)
+                if matches!(error.kind(), ErrorKind::Interrupted | ErrorKind::WouldBlock) =>
+            {
+                Err(error)
+            }
+            Ok(count) if count > 0 => Ok(count),
+            Ok(_) | Err(_) => {
+                self.has_ended = true;
+                Err(ErrorKind::WouldBlock.into())
+            }
         }
     }
 }
@@ -40,11 +121,27 @@ pub(super) struct Channel {
     pub address: OpenChannel,
 }
 
-/// Opens a channel. `number` is the program's number of its descriptor, if it is not ours.
+/// Opens a channel, and offers the report. `number` is the program's number of its descriptor, if
+/// it is not ours.
 pub(super) fn open_channel(
     channel: ReportChannel,
     number: Option<RawFd>,
+    scratch: &Path,
 ) -> std::io::Result<Channel> {
+    let mut channel = connect_channel(channel, number)?;
+    if let OpenChannel::Descriptor(path) = &channel.address {
+        report_dir::offer(scratch, Some(path))?;
+        // Frameworks separate parts of an argument with them.
+        if !scratch.to_string_lossy().contains([',', ':']) {
+            channel.address = OpenChannel::Descriptor(report_dir::log(scratch));
+        }
+    } else if let OpenChannel::Socket(_) = &channel.address {
+        report_dir::offer(scratch, None)?;
+    }
+    Ok(channel)
+}
+
+fn connect_channel(channel: ReportChannel, number: Option<RawFd>) -> std::io::Result<Channel> {
     let (source, theirs, address) = match channel {
         ReportChannel::None => (None, None, OpenChannel::None),
         ReportChannel::Stdout => (None, None, OpenChannel::Stdout),
@@ -56,10 +153,9 @@ pub(super) fn open_channel(
             (Some(Source::File(non_blocking(ours)?)), Some(theirs), address)
         }
         ReportChannel::Socket => {
-            let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))?;
-            listener.set_nonblocking(true)?;
-            let address = OpenChannel::Socket(listener.local_addr()?);
-            (Some(Source::Listener(listener)), None, address)
+            let socket = ReportSocket::listen()?;
+            let address = OpenChannel::Socket(socket.listener.local_addr()?);
+            (Some(Source::Socket(socket)), None, address)
         }
     };
     Ok(Channel { source, theirs, address })

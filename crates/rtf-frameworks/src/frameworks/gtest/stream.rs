@@ -13,6 +13,10 @@ use crate::utf8_pieces::Utf8Pieces;
 
 const SKIPPED: &str = "[  SKIPPED ] ";
 const FAILED: &str = "[  FAILED  ] ";
+/// The first and the last line of a program.
+const PROGRAM: &str = "[==========] ";
+/// They have the same length.
+const MARKS: [&str; 3] = [SKIPPED, FAILED, PROGRAM];
 
 /// Text after a mark that is enough to contain the name of a test.
 const NAME_BYTES: usize = 4096;
@@ -48,9 +52,12 @@ pub(super) struct Reader {
     output: String,
     /// What arrives for `output`.
     pieces: Utf8Pieces,
-    /// Tests whose marks were seen, and whether they were skipped. Each end of a test takes its
-    /// first one, so that the result does not depend on which channel is read first.
-    marks: HashMap<String, VecDeque<bool>>,
+    /// How many programs are printing: a descendant prints its tests inside of this one.
+    programs: usize,
+    /// The last mark of each test: whether it was skipped.
+    marks: HashMap<String, bool>,
+    /// Those that a descendant seems to have printed.
+    unsure_marks: HashMap<String, bool>,
     /// Tests that were reported as skipped.
     skipped: HashSet<String>,
 }
@@ -79,6 +86,18 @@ enum Event {
     TestStart(String),
     Part(Part),
     TestEnd { passed: bool },
+    Other,
+}
+
+/// What has been read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Known {
+    /// The stream, but not yet what the program has printed before.
+    Stream,
+    /// Both.
+    Output,
+    /// Everything until the end of the program.
+    All,
 }
 
 impl Reader {
@@ -93,23 +112,41 @@ impl Reader {
             running: None,
             output: String::new(),
             pieces: Utf8Pieces::default(),
+            programs: 0,
             marks: HashMap::new(),
+            unsure_marks: HashMap::new(),
             skipped: HashSet::new(),
         }
     }
 
     /// Carries out the queued events up to one whose verdict is unknown.
-    fn advance(&mut self, is_last: bool, cases: &mut CaseReporter<'_>) {
-        while let Some(event) = self.queue.pop_front() {
-            if let Event::TestEnd { passed: false } = event
-                && !is_last
-                && self.running.as_ref().is_some_and(|run| !self.has_mark(&run.name))
-            {
-                self.queue.push_front(event);
-                return;
-            }
+    fn advance(&mut self, known: Known, cases: &mut CaseReporter<'_>) {
+        while !self.waits(known)
+            && let Some(event) = self.queue.pop_front()
+        {
             self.carry_out(event, cases);
         }
+    }
+
+    /// Whether the next event is the end of a test that has not passed, and its mark may still be
+    /// missing.
+    fn waits(&self, known: Known) -> bool {
+        let (Some(Event::TestEnd { passed: false }), Some(running)) =
+            (self.queue.front(), &self.running)
+        else {
+            return false;
+        };
+        match known {
+            Known::Stream => true,
+            // The program writes the mark before the next event.
+            Known::Output => self.queue.len() == 1 || self.mark(&running.name).is_none(),
+            Known::All => false,
+        }
+    }
+
+    /// Whether a test was skipped, if that is known.
+    fn mark(&self, test: &str) -> Option<bool> {
+        self.marks.get(test).or_else(|| self.unsure_marks.get(test)).copied()
     }
 
     fn carry_out(&mut self, event: Event, cases: &mut CaseReporter<'_>) {
@@ -128,18 +165,14 @@ impl Reader {
                 None => report_failure(None, part, cases),
             },
             Event::TestEnd { passed } => self.end_test(passed, cases),
+            Event::Other => {}
         }
-    }
-
-    fn has_mark(&self, test: &str) -> bool {
-        self.marks.get(test).is_some_and(|marks| !marks.is_empty())
     }
 
     fn end_test(&mut self, passed: bool, cases: &mut CaseReporter<'_>) {
         let Some(Running { name, parts }) = self.running.take() else { return };
         // A skipped test has not passed; one that has may have printed the mark itself.
-        let marks = self.marks.get_mut(&name).filter(|_| !passed);
-        if marks.and_then(VecDeque::pop_front) == Some(true) {
+        if !passed && self.mark(&name) == Some(true) {
             let reasons: Vec<&str> = parts.iter().map(|part| part.text.trim()).collect();
             let reason = reasons.join("\n");
             let reason = if reason.is_empty() { "skipped" } else { reason.trim() };
@@ -171,7 +204,7 @@ impl Reader {
         for suite in &report.testsuites {
             for test in &suite.testsuite {
                 let name = format!("{}.{}", suite.name, test.name);
-                self.marks.insert(name, [test.was_skipped()].into());
+                self.marks.insert(name, test.was_skipped());
             }
         }
     }
@@ -205,28 +238,33 @@ impl ReportReader for Reader {
         let rest = self.line.split_off(end + 1);
         let lines = std::mem::replace(&mut self.line, rest);
         for line in lines.split(|byte| *byte == b'\n').filter(|line| !line.is_empty()) {
-            self.queue.extend(parse(&String::from_utf8_lossy(line))?);
+            self.queue.push_back(parse(&String::from_utf8_lossy(line))?);
         }
-        self.advance(false, cases);
+        self.advance(Known::Stream, cases);
         Ok(())
     }
 
-    fn output(&mut self, stream: OutputStream, bytes: &[u8], cases: &mut CaseReporter<'_>) {
+    fn output(&mut self, stream: OutputStream, bytes: &[u8], _cases: &mut CaseReporter<'_>) {
         if stream == OutputStream::Stdout && !self.report_decides {
             self.pieces.append(bytes, &mut self.output);
             self.find_marks();
-            self.advance(false, cases);
+        }
+    }
+
+    fn settle(&mut self, cases: &mut CaseReporter<'_>) {
+        if !self.report_decides {
+            self.advance(Known::Output, cases);
         }
     }
 
     fn finish(&mut self, end: ExitStatus, cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
         let text = std::fs::read(&self.report).unwrap_or_default();
         let report = serde_json::from_slice::<Report>(&text).ok();
-        if let (Some(report), true) = (&report, self.report_decides) {
+        if let Some(report) = &report {
             self.mark_skipped(report);
         }
         // After a crash, a test without a mark has failed.
-        self.advance(true, cases);
+        self.advance(Known::All, cases);
         if let Some(Running { name, parts }) = self.running.take() {
             // The failures of a test that did not end.
             parts.into_iter().for_each(|part| report_failure(Some(&name), part, cases));
@@ -239,20 +277,26 @@ impl ReportReader for Reader {
 }
 
 impl Reader {
-    /// Finds the marks of skipped and failed tests in the output.
+    /// Finds the marks of skipped and failed tests in the output. That of a test arrives after its
+    /// end. Descendants may run the same tests, and print their marks before.
     fn find_marks(&mut self) {
-        let mut rest = self.output.as_str();
-        while let Some(at) = [SKIPPED, FAILED].iter().filter_map(|mark| rest.find(mark)).min() {
-            let (is_skip, text) = (rest[at..].starts_with(SKIPPED), &rest[at + SKIPPED.len()..]);
+        let output = std::mem::take(&mut self.output);
+        let mut rest = output.as_str();
+        while let Some(at) = MARKS.iter().filter_map(|mark| rest.find(mark)).min() {
+            let (mark, text) = (&rest[at..][..SKIPPED.len()], &rest[at + SKIPPED.len()..]);
             // After a colour.
             let text = text.strip_prefix("\u{1b}[m").unwrap_or(text);
-            let Some(end) = text.find(['\n', ' ', ',']) else {
+            let ends: &[char] = if mark == PROGRAM { &['\n'] } else { &['\n', ' ', ','] };
+            let Some(end) = text.find(ends) else {
                 let kept = if text.len() > NAME_BYTES { "" } else { &rest[at..] };
                 self.output = kept.to_owned();
                 return;
             };
-            let name = text[..end].to_owned();
-            self.marks.entry(name).or_default().push_back(is_skip);
+            if mark == PROGRAM {
+                self.count_program(&text[..end]);
+            } else {
+                self.add_mark(&text[..end], mark == SKIPPED);
+            }
             rest = &text[end..];
         }
         // A mark may be cut.
@@ -262,10 +306,25 @@ impl Reader {
         }
         self.output = rest[start..].to_owned();
     }
+
+    /// A program begins or ends. A process that was forked may end inside of this program, too.
+    fn count_program(&mut self, text: &str) {
+        if text.starts_with("Running ") {
+            self.programs += 1;
+        } else if text.contains(" ran.") {
+            self.programs = self.programs.saturating_sub(1).max(1);
+        }
+    }
+
+    /// The last mark counts: those before are from processes that were forked from this one.
+    fn add_mark(&mut self, test: &str, is_skip: bool) {
+        let marks = if self.programs <= 1 { &mut self.marks } else { &mut self.unsure_marks };
+        marks.insert(test.to_owned(), is_skip);
+    }
 }
 
-/// Parses a line of the stream; nothing for a line that is not needed.
-fn parse(line: &str) -> Result<Option<Event>, Garbage> {
+/// Parses a line of the stream.
+fn parse(line: &str) -> Result<Event, Garbage> {
     let fields: HashMap<&str, String> = line
         .split('&')
         .filter_map(|field| field.split_once('='))
@@ -273,7 +332,7 @@ fn parse(line: &str) -> Result<Option<Event>, Garbage> {
         .collect();
     let field = |name: &str| fields.get(name).cloned().unwrap_or_default();
     let event = field("event");
-    Ok(Some(match event.as_str() {
+    Ok(match event.as_str() {
         "TestCaseStart" | "TestSuiteStart" => Event::SuiteStart(field("name")),
         "TestStart" => Event::TestStart(field("name")),
         "TestPartResult" => {
@@ -284,13 +343,13 @@ fn parse(line: &str) -> Result<Option<Event>, Garbage> {
             Event::Part(Part { text: field("message"), location })
         }
         "TestEnd" => Event::TestEnd { passed: field("passed") == "1" },
-        other if OTHER_EVENTS.contains(&other) => return Ok(None),
-        "" if line.starts_with("gtest_streaming_protocol_version=") => return Ok(None),
+        other if OTHER_EVENTS.contains(&other) => Event::Other,
+        "" if line.starts_with("gtest_streaming_protocol_version=") => Event::Other,
         _ => {
             let start: String = line.chars().take(200).collect();
             return Err(Garbage(format!("`{start}` is no line of GoogleTest's result stream")));
         }
-    }))
+    })
 }
 
 /// Decodes `%3D`.
