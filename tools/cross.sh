@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds rtf, its hosts and librtf-fork-server.so for a processor and glibc 2.28, with Zig as
+# Builds rtf, its hosts and the preloaded libraries in C for a processor and glibc 2.28, with Zig as
 # the linker and the C compiler, and prints the directory of the programs.
 #
 #   tools/cross.sh x86_64|aarch64
@@ -45,5 +45,5 @@ PATH=$tools:$PATH "${CARGO:-cargo}" zigbuild --release --locked --target "$targe
   -p rtf -p rtf-host-native -p rtf-host-lua -p rtf-frameworks \
   -p rtf-host-signals -p rtf-host-faults >&2
 programs=$TARGET/$target/release
-CC="tools/zig.sh cc --target=$processor-linux-gnu.2.28" tools/preload.sh "$programs" fork_server
+CC="tools/zig.sh cc --target=$processor-linux-gnu.2.28" tools/preload.sh "$programs" "fork_server report"
 printf '%s\n' "$programs"

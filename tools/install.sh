@@ -86,7 +86,7 @@ put 755 "$programs/rtf-host-lua" libexec/rtf/rtf-host-lua
 put 755 "$programs/rtf-host-framework" libexec/rtf/rtf-host-framework
 put 755 "$programs/rtf-host-signals" libexec/rtf/rtf-host-signals
 put 755 "$programs/rtf-host-faults" libexec/rtf/rtf-host-faults
-for library in librtf-fork-server.so librtf-cppunit.so; do
+for library in librtf-fork-server.so librtf-report.so librtf-cppunit.so; do
   if [ -e "$libraries/$library" ]; then
     put 644 "$libraries/$library" "libexec/rtf/$library"
   else

@@ -25,10 +25,11 @@ setting() {
   printf 'export %s=%q\n' "$1" "$2"
 }
 
-# Compiles each C++ program of the corpus that is older than its sources: NAME.cpp to NAME.
-# Arguments are for the compiler.
+# Compiles each C++ program of the corpus that is older than its sources: NAME.cpp to NAME, and the
+# libraries that rtf loads into them. Arguments are for the compiler.
 cpp_programs() {
   local file program
+  quietly tools/preload.sh
   for file in "$source"/*.cpp; do
     program=$out/$(basename "$file" .cpp)
     if [ "$file" -nt "$program" ] || [ "$source/build.sh" -nt "$program" ] ||

@@ -28,7 +28,7 @@ for file in bin/rtf libexec/rtf/rtf-host-native libexec/rtf/rtf-host-lua \
   share/rtf/python/robottestingframework.py share/rtf/ruby/lib/rtf/host.rb \
   share/rtf/ada/robottestingframework.gpr share/rtf/ada/src/robottestingframework.ads \
   include/rtf/session.hpp include/rtf/cppunit.hpp include/rtf/internal/SessionReports.hpp \
-  libexec/rtf/librtf-cppunit.so libexec/rtf/librtf-fork-server.so share/rtf/ada/rtf_aunit.gpr share/rtf/ada/aunit/rtf_aunit.ads \
+  libexec/rtf/librtf-cppunit.so libexec/rtf/librtf-fork-server.so libexec/rtf/librtf-report.so share/rtf/ada/rtf_aunit.gpr share/rtf/ada/aunit/rtf_aunit.ads \
   share/rtf/ament/ament_cmake_rtf/package.xml \
   share/doc/rtf/README.md share/doc/rtf/docs/images/live.png share/doc/rtf/examples/07-levels/rtf.toml; do
   [ -s "$prefix/$file" ] || die "$file was not installed"

@@ -16,6 +16,8 @@
 
 #include <rtf/cppunit.hpp>
 
+#include "environment.h"
+
 #define EXPORTED extern "C" __attribute__((visibility("default")))
 
 namespace {
@@ -30,6 +32,13 @@ std::set<const CppUnit::TestResult *> &results()
     return results;
 }
 
+// The program has the library now. What it starts must not load it, too.
+void leave_environment()
+{
+    static const bool is_done = (rtf_restore_environment("librtf-cppunit.so"), true);
+    static_cast<void>(is_done);
+}
+
 void construct(const char *symbol, CppUnit::TestResult *result, Synchronization *synchronization)
 {
     void *const found = dlsym(RTLD_NEXT, symbol);
@@ -40,6 +49,7 @@ void construct(const char *symbol, CppUnit::TestResult *result, Synchronization 
     Constructor constructor = nullptr;
     std::memcpy(&constructor, &found, sizeof constructor);
     constructor(result, synchronization);
+    leave_environment();
     if (rtf::internal::session::is_open()) {
         rtf::internal::session::CppUnitReporter::instance().attach_to(*result);
         results().insert(result);
@@ -76,6 +86,7 @@ void rtf_construct_base(CppUnit::TestResult *result, Synchronization *synchroniz
 EXPORTED char *rtf_session_exchange(const char *packet, std::size_t length,
                                     std::size_t *answer_length)
 {
+    leave_environment();
     const std::string answer =
         rtf::internal::session::Channel::instance().exchange(std::string(packet, length));
     *answer_length = answer.size();

@@ -28,6 +28,9 @@ _ANSWER_BYTES = 1 << 20
 
 _ACCEPTED = b"0"
 
+# A program in C++ that started this one has taken the session.
+_TAKEN = "FD:"
+
 _ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(",", ":"))
 
 
@@ -49,7 +52,7 @@ class Connection:
     def from_environment(cls) -> Connection | None:
         """Open the connection, and remove the variable. `None` without a host."""
         place = os.environ.pop(SESSION_VARIABLE, "")
-        if not place:
+        if not place or place.startswith(_TAKEN):
             return None
         scheme, _, number = place.partition(":")
         if scheme != "fd" or not number.isdecimal():
@@ -63,16 +66,16 @@ class Connection:
     def post(self, method: str, params: Mapping[str, object]) -> None:
         """Send a packet without waiting for an answer."""
         packet: dict[str, object] = {"method": method, "answer": False, "params": params}
-        self._send(_packets(packet))
+        if self.is_ours():
+            self._send(_packets(packet))
 
     def post_encoded(self, method: str, params: str) -> None:
         """Send a short packet without waiting for an answer. `params` is a JSON object."""
         text = f'{{"method":"{method}","answer":false,"params":{params}}}'
-        self._send((text.encode("utf-8", "replace"),))
+        if self.is_ours():
+            self._send((text.encode("utf-8", "replace"),))
 
     def _send(self, packets: Iterable[bytes]) -> None:
-        if not self.is_ours():
-            return
         try:
             for packet in packets:
                 self._socket.send(packet)
@@ -80,7 +83,13 @@ class Connection:
             end_without_runner()
 
     def request(self, method: str, params: Mapping[str, object]) -> None:
-        """Send a packet, and wait until the host has processed it."""
+        """Send a packet, and wait until the host has processed it.
+
+        A forked process does not wait: it would receive an answer of this one.
+        """
+        if not self.is_ours():
+            self._send(_packets({"method": method, "answer": False, "params": params}))
+            return
         for packet in _packets({"method": method, "params": params}):
             if self._ask(packet) != _ACCEPTED:
                 raise Rejected(f"the host rejected `{method}`")

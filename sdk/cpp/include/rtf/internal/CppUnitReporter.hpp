@@ -74,7 +74,7 @@ public:
         }
     }
 
-    // A forked process only adds failures to the case in which the test forked.
+    // A forked process starts and finishes no case.
     void startTest(CppUnit::Test *test) override
     {
         if (Channel::instance().is_forked()) {
@@ -99,6 +99,11 @@ public:
         }
         std::string text = message.shortDescription() + "\n" + message.details();
         text.erase(text.find_last_not_of('\n') + 1);
+        if (Channel::instance().is_forked()) {
+            // Without rtf, only the program that runs the tests has a result.
+            message_with("report", "in a forked process: " + text, more);
+            return;
+        }
         message_with(failure.isError() ? "error" : "failure", text, more + comparison(message));
     }
 

@@ -80,11 +80,12 @@ public:
 private:
     Channel() : start_(std::chrono::steady_clock::now()), owner_(getpid()), fd_(descriptor()) {}
 
-    // The number in `fd:N`; -1 if there is none.
+    // The number in `fd:N`, or in `FD:N`; -1 if there is none.
     static int descriptor()
     {
         const char *const variable = std::getenv("RTF_SESSION");
-        if (variable == nullptr || std::strncmp(variable, "fd:", 3) != 0) {
+        if (variable == nullptr ||
+            (std::strncmp(variable, "fd:", 3) != 0 && std::strncmp(variable, "FD:", 3) != 0)) {
             return -1;
         }
         char *end = nullptr;
@@ -101,15 +102,22 @@ private:
             is_checked_ = true;
             int type = 0;
             socklen_t size = sizeof type;
-            // A program that this one started has the variable, and may lack the descriptor.
+            char *const variable = std::getenv("RTF_SESSION");
             if (getsockopt(fd_, SOL_SOCKET, SO_TYPE, &type, &size) != 0 || type != SOCK_SEQPACKET) {
-                std::fputs("rtf: the descriptor in RTF_SESSION is not open here: "
-                           "results of this process are not reported\n",
-                           stderr);
+                // A program that another one started, which has taken the session, says nothing.
+                if (variable != nullptr && variable[0] == 'f') {
+                    std::fputs("rtf: the descriptor in RTF_SESSION is not open here: "
+                               "results of this process are not reported\n",
+                               stderr);
+                }
                 is_broken_ = true;
                 return false;
             }
             fcntl(fd_, F_SETFD, FD_CLOEXEC);
+            if (variable != nullptr && std::strncmp(variable, "fd:", 3) == 0) {
+                // In place: other threads may read the environment.
+                std::memcpy(variable, "FD", 2);
+            }
         }
         return true;
     }
