@@ -30,6 +30,7 @@ setting() {
 cpp_programs() {
   local file program
   quietly tools/preload.sh
+  install -m 755 tests/frameworks/descendants/twice_test.sh "$out/twice_test"
   for file in "$source"/*.cpp; do
     program=$out/$(basename "$file" .cpp)
     if [ "$file" -nt "$program" ] || [ "$source/build.sh" -nt "$program" ] ||

@@ -173,6 +173,12 @@ pub trait Framework {
         None
     }
 
+    /// Whether the program opens its report with functions of the C library, which `librtf-report.so`
+    /// replaces to keep the report from descendants.
+    fn has_own_report(&self) -> bool {
+        false
+    }
+
     /// The cases to run for these selected ones, in order: a framework may add cases on
     /// which others depend.
     fn order(&self, _listed: &[ListedCase], selected: Vec<ListedCase>) -> Vec<ListedCase> {

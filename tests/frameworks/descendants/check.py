@@ -57,7 +57,7 @@ def python() -> str:
     return os.environ.get("RTF_PYTHON", "python3")
 
 
-COMPILED = ["descendants_test"]
+COMPILED = ["descendants_test", "twice_test"]
 CORPORA = {
     "gtest": Corpus(
         COMPILED,
@@ -74,8 +74,9 @@ CORPORA = {
         [ONE, SEPARATE, AT_MAIN],
         lambda program, case: [built("doctest", program), f"--test-case={case}"],
     ),
+    # Its list of cases cannot be printed twice.
     "boost": Corpus(
-        COMPILED,
+        COMPILED[:1],
         [ONE, SEPARATE, 'fork="main"'],
         lambda program, case: [built("boost", program), f"--run_test={case}"],
     ),

@@ -106,6 +106,10 @@ impl Framework for BoostTest {
         true
     }
 
+    fn has_own_report(&self) -> bool {
+        true
+    }
+
     fn fork_server_command(&self, test: &TestProgram) -> Option<Command> {
         let mut command = command(&test.file);
         command.arg("--list_content=DOT");

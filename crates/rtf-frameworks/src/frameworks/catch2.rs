@@ -93,6 +93,10 @@ impl Framework for Catch2 {
         true
     }
 
+    fn has_own_report(&self) -> bool {
+        true
+    }
+
     fn fork_server_command(&self, test: &TestProgram) -> Option<Command> {
         let mut command = command(test);
         command.arg("--list-tests");

@@ -99,6 +99,10 @@ impl Framework for Doctest {
         true
     }
 
+    fn has_own_report(&self) -> bool {
+        true
+    }
+
     fn fork_server_command(&self, test: &TestProgram) -> Option<Command> {
         let mut command = test.command();
         command.arg("--list-test-cases");

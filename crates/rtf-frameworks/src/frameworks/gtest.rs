@@ -150,6 +150,10 @@ impl Framework for GoogleTest {
         true
     }
 
+    fn has_own_report(&self) -> bool {
+        true
+    }
+
     fn fork_server_command(&self, test: &TestProgram) -> Option<Command> {
         let mut command = command(test);
         command.arg("--gtest_list_tests");

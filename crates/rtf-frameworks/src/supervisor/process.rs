@@ -118,7 +118,9 @@ fn start<'a>(
         scratch: test.scratch,
     };
     let mut command = test.framework.command(&launch)?;
-    report_dir::prepare(&mut command, &launch, server.is_none())?;
+    if test.framework.has_own_report() {
+        report_dir::prepare(&mut command, &launch, server.is_none())?;
+    }
     let (session, session_end) =
         session_socket::pair().map_err(|error| format!("the session cannot be opened: {error}"))?;
     let outputs = streams::open_outputs(test.framework, &launch)
