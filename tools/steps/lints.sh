@@ -50,6 +50,7 @@ lint_python() {
   "$checkers/mypy" tests/ctest/*.py
   "$checkers/mypy" tests/colcon/*.py
   "$checkers/mypy" tests/frameworks/*.py
+  "$checkers/mypy" tests/frameworks/descendants/*.py
   "$checkers/mypy" tests/frameworks/public/*.py
   "$checkers/mypy" tests/frameworks/go/own.py
   "$checkers/mypy" tests/frameworks/cargo/own.py

@@ -60,7 +60,8 @@ __attribute__((visibility("default"))) int __cxa_atexit(RtfDestructor destructor
         }
         memcpy(&next, &found, sizeof next);
     }
-    struct RtfBoostObject *const registered = rtf_is_boost(handle) ? malloc(sizeof *registered) : NULL;
+    struct RtfBoostObject *const registered =
+        rtf_is_boost(handle) ? malloc(sizeof *registered) : NULL;
     if (registered == NULL) {
         return next(destructor, object, handle);
     }

@@ -72,18 +72,22 @@ static void remember(int descriptor)
     }
 }
 
-// Takes the report, if no process has it. The other ones find closed files.
+// Takes the report, if no process has it. The other ones find closed files. None of them needs the
+// library in the programs that it starts.
 static int take_report(const char *wanted)
 {
     char taken[PATH_MAX];
     const int length = snprintf(taken, sizeof taken, "%s" TAKEN_SUFFIX, wanted);
-    if (length < 0 || (size_t)length >= sizeof taken || rename(taken, wanted) != 0) {
+    if (length < 0 || (size_t)length >= sizeof taken) {
         return 0;
     }
     strcpy(directory, wanted);
-    owner = getpid();
     unsetenv(REPORT_VARIABLE);
     rtf_restore_environment("librtf-report.so");
+    if (rename(taken, directory) != 0) {
+        return 0;
+    }
+    owner = getpid();
     pthread_atfork(NULL, NULL, leave_report);
     return 1;
 }
@@ -118,8 +122,8 @@ static const char *own_path(const char *path, char *buffer)
     if (!takes && (owner == 0 || rtf_is_forked() || !is_in(directory, path))) {
         return path;
     }
-    const int length = snprintf(buffer, PATH_MAX, "%s" OPEN_SUFFIX "%s", directory,
-                                path + strlen(directory));
+    const int length =
+        snprintf(buffer, PATH_MAX, "%s" OPEN_SUFFIX "%s", directory, path + strlen(directory));
     return length > 0 && length < PATH_MAX ? buffer : path;
 }
 

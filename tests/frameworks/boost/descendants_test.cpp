@@ -5,5 +5,8 @@
 #include "../descendants/descendants.hpp"
 
 #define CASE(name)                                                                                 \
-    BOOST_AUTO_TEST_CASE(name) { BOOST_CHECK(descendants::holds(descendants::name)); }
+    BOOST_AUTO_TEST_CASE(name)                                                                     \
+    {                                                                                              \
+        BOOST_CHECK(descendants::holds(descendants::name));                                        \
+    }
 DESCENDANTS(CASE)

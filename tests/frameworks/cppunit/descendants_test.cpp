@@ -1,5 +1,6 @@
-// Cases that start processes, see tests/frameworks/descendants. With REPORTS_CASES, the program
-// reports them itself, and needs no preloaded library.
+// Cases that start processes, see tests/frameworks/descendants. With
+// REPORTS_CASES, the program reports them itself, and needs no preloaded
+// library.
 #include <string>
 
 #include <cppunit/TestCaller.h>
@@ -18,7 +19,10 @@ class Descendants : public CppUnit::TestFixture
 {
 public:
 #define CASE(name)                                                                                 \
-    void name() { CPPUNIT_ASSERT(descendants::holds(descendants::name)); }
+    void name()                                                                                    \
+    {                                                                                              \
+        CPPUNIT_ASSERT(descendants::holds(descendants::name));                                     \
+    }
     DESCENDANTS(CASE)
 #undef CASE
 };

@@ -28,7 +28,7 @@ from observed import TestResult, observe  # noqa: E402
 from run import Run  # noqa: E402
 
 SECONDS = 120
-RUNS = {"executed": ["--fork", "never"], "forked": []}
+RUNS: dict[str, list[str]] = {"executed": ["--fork", "never"], "forked": []}
 """Options of rtf; the second run is for programs that can be forked."""
 
 ONE = ""
@@ -93,7 +93,7 @@ CORPORA = {
     "unittest": Corpus(
         [str(HERE / "unittest/test_descendants.py")],
         [ONE, SEPARATE],
-        lambda program, case: [python(), "-m", "unittest", "-v", case],
+        lambda _program, case: [python(), "-m", "unittest", "-v", case],
     ),
 }
 

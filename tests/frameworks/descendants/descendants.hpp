@@ -1,5 +1,6 @@
-// What the cases of the programs `descendants_test` do: each starts processes, and holds or not.
-// tests/frameworks/descendants/check.py compares the verdicts under rtf with those without it.
+// What the cases of the programs `descendants_test` do: each starts processes,
+// and holds or not. tests/frameworks/descendants/check.py compares the verdicts
+// under rtf with those without it.
 #ifndef DESCENDANTS_HPP
 #define DESCENDANTS_HPP
 
@@ -22,7 +23,8 @@ namespace descendants {
 // In the environment of a descendant: whether its cases `pass` or `fail`.
 constexpr const char *role_variable = "DESCENDANT_ROLE";
 
-// A child that does not return from its case has this exit code, or this signal.
+// A child that does not return from its case has this exit code, or this
+// signal.
 enum { OWN_CODE = 3, SIGNALLED = 128 };
 
 inline bool is_descendant()
@@ -67,8 +69,8 @@ inline std::vector<char *> pointers(std::vector<std::string> &strings)
     return list;
 }
 
-// Executes this program again with its arguments. Without its environment, the descendant only
-// has its role. Its end, and what it wrote to standard output.
+// Executes this program again with its arguments. Without its environment, the
+// descendant only has its role. Its end, and what it wrote to standard output.
 inline int execute(const char *role, bool has_environment, bool spawns, std::string &output)
 {
     static std::vector<std::string> arguments = own_strings("cmdline");
@@ -214,7 +216,8 @@ inline bool forks_and_aborts()
     return end_of(child) == SIGNALLED + SIGABRT;
 }
 
-// The child goes on with the other cases. Its exit code depends on the cases before this one.
+// The child goes on with the other cases. Its exit code depends on the cases
+// before this one.
 inline bool forks_and_returns()
 {
     const pid_t child = fork();

@@ -5,5 +5,8 @@
 #include "../descendants/descendants.hpp"
 
 #define CASE(name)                                                                                 \
-    TEST_CASE(#name) { CHECK(descendants::holds(descendants::name)); }
+    TEST_CASE(#name)                                                                               \
+    {                                                                                              \
+        CHECK(descendants::holds(descendants::name));                                              \
+    }
 DESCENDANTS(CASE)

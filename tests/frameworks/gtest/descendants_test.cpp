@@ -4,7 +4,10 @@
 #include "../descendants/descendants.hpp"
 
 #define CASE(name)                                                                                 \
-    TEST(Descendants, name) { EXPECT_TRUE(descendants::holds(descendants::name)); }
+    TEST(Descendants, name)                                                                        \
+    {                                                                                              \
+        EXPECT_TRUE(descendants::holds(descendants::name));                                        \
+    }
 DESCENDANTS(CASE)
 
 TEST(Descendants, skips_after_a_descendant_that_fails)

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+from multiprocessing.context import ForkContext, SpawnContext
 from pathlib import Path
 from typing import NoReturn
 
@@ -128,9 +129,8 @@ def die(_number: int) -> NoReturn:
     sys.exit(OWN_CODE)
 
 
-def uses_workers(method: str) -> bool:
+def uses_workers(context: SpawnContext | ForkContext) -> bool:
     """Use processes of `multiprocessing`."""
-    context = multiprocessing.get_context(method)
     with context.Pool(2) as pool:
         doubled = pool.map(work, range(4))
     process = context.Process(target=die, args=(1,))
@@ -141,12 +141,12 @@ def uses_workers(method: str) -> bool:
 
 def spawns_workers() -> bool:
     """Workers are executed."""
-    return uses_workers("spawn")
+    return uses_workers(multiprocessing.get_context("spawn"))
 
 
 def forks_workers() -> bool:
     """Workers are forked."""
-    return uses_workers("fork")
+    return uses_workers(multiprocessing.get_context("fork"))
 
 
 def reports_from_a_fork() -> bool:

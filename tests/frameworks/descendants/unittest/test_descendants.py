@@ -9,7 +9,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "pytest"))
 
-import deeds  # noqa: E402
+import deeds
 
 
 class Inner(unittest.TestCase):
