@@ -27,7 +27,7 @@
 // `PORT:DIRECTORY`: a port on the loopback interface, or 0, and the directory of the files.
 #define REPORT_VARIABLE "RTF_REPORT"
 
-// Beside the directory, which is a symbolic link: what it contains for the process that has the
+// Next to the directory, which is a symbolic link: what it contains for the process that has the
 // report, and the link that replaces it for all others.
 #define OPEN_SUFFIX ".open"
 #define TAKEN_SUFFIX ".taken"

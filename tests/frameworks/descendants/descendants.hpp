@@ -216,7 +216,7 @@ inline bool forks_and_aborts()
     return end_of(child) == SIGNALLED + SIGABRT;
 }
 
-// The child goes on with the other cases. Its exit code depends on the cases
+// The child continues with the other cases. Its exit code depends on the cases
 // before this one.
 inline bool forks_and_returns()
 {

@@ -101,7 +101,7 @@ def forks_and_aborts() -> bool:
 
 
 def forks_and_returns() -> bool:
-    """A child goes on with the other cases."""
+    """A child continues with the other cases."""
     child = os.fork()
     if child == 0:
         os.environ[ROLE] = "pass"
