@@ -214,3 +214,35 @@ fn non_blocking(fd: OwnedFd) -> std::io::Result<File> {
     rustix::io::ioctl_fionbio(&fd, true)?;
     Ok(fd.into())
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write as _;
+
+    use super::*;
+
+    #[test]
+    fn only_the_first_connection_is_the_report_and_nobody_waits() {
+        let mut socket = ReportSocket::listen().unwrap();
+        let address = socket.listener.local_addr().unwrap();
+        let (mut piece, mut report) = (vec![0; 1024], Vec::new());
+        let mut first = TcpStream::connect(address).unwrap();
+        first.write_all(b"first").unwrap();
+        while report.len() < 5 {
+            if let Ok(count) = socket.read(&mut piece) {
+                report.extend_from_slice(&piece[..count]);
+            }
+        }
+        // More than the kernel keeps, after the end of the first one.
+        drop(first);
+        let second = std::thread::spawn(move || {
+            TcpStream::connect(address).unwrap().write_all(&vec![b'2'; 32 << 20]).unwrap();
+        });
+        while !second.is_finished() {
+            let read = socket.read(&mut piece);
+            assert_eq!(read.map_err(|error| error.kind()), Err(ErrorKind::WouldBlock));
+        }
+        second.join().unwrap();
+        assert_eq!((report.as_slice(), socket.others.len() <= 1), (&b"first"[..], true));
+    }
+}
