@@ -82,19 +82,21 @@ def test_a_comparison_belongs_to_the_assertion_that_failed(tmp_path: Path) -> No
     ]
 
 
-def test_a_process_that_a_test_forks_reports_nothing(tmp_path: Path) -> None:
+def test_a_process_that_a_test_forks_reports_without_waiting(tmp_path: Path) -> None:
     text = (
         "def test_a(rtf):\n"
         "    pid = os.fork()\n"
         "    if pid == 0:\n"
-        "        try:\n            rtf.measure('speed', 1)\n"
-        "        except RuntimeError:\n            os._exit(7)\n"
-        "        os._exit(0)\n"
-        "    assert os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) == 7\n"
+        "        code = 1\n"
+        "        try:\n            code = int(not rtf.measure('speed', 1))\n"
+        "        finally:\n            os._exit(code)\n"
+        "    assert os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) == 0\n"
     )
     host = run(tmp_path, text)
     assert host.results() == {"test_arm.py::test_a": "passed"}
-    assert host.of("measured") == []
+    assert [params["name"] for params in host.of("measured")] == ["speed"]
+    answered = [packet for packet in host.packets if packet["method"] == "measured"]
+    assert [packet["answer"] for packet in answered] == [False]
 
 
 def test_samples_arrive_in_their_case(tmp_path: Path) -> None:
