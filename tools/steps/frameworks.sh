@@ -78,12 +78,13 @@ tutorial_ros2_workspace() {
     python3 tests/colcon/tutorial.py "$prefix" "$BUILD/tutorial/workspace"
 }
 
-# The corpus of a test framework, see tests/frameworks/check.py, and programs of it whose cases start
-# processes, see tests/frameworks/descendants/check.py.
+# The corpus of a test framework, the promises to it, and programs of it whose cases start processes, see
+# tests/frameworks/check.py, promises.py and descendants/check.py.
 framework() {
   local settings
   settings=$(tests/frameworks/build.sh "$1")
   eval "$settings"
   python3 tests/frameworks/check.py "$TARGET/release/rtf" "$1"
+  python3 tests/frameworks/promises.py "$TARGET/release/rtf" "$1"
   python3 tests/frameworks/descendants/check.py "$TARGET/release/rtf" "$1"
 }

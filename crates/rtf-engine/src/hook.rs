@@ -74,6 +74,13 @@ impl HookJudgement {
         self.problem.get_or_insert(problem.into());
     }
 
+    /// Adds to the problem, if there is one.
+    pub fn add(&mut self, text: &str) {
+        if let Some(problem) = &mut self.problem {
+            *problem = format!("{problem}; {text}");
+        }
+    }
+
     /// Takes its output into account: the reason of a bad end contains a line of it.
     pub fn printed(&mut self, stream: Stream, bytes: &[u8]) {
         self.log.push(stream, bytes);

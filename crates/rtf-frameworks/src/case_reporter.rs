@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use rtf_host::Session;
 use rtf_model::protocol::{CaseSelector, Notification};
-use rtf_model::{CaseId, CaseStart, LeakedProcess, Outcome};
+use rtf_model::{CaseId, CaseStart, LeakedProcess, MessageKind, Outcome};
 
 use crate::case::{CaseResult, Retry, Selection, StartedCase};
 use crate::wanted::WantedCases;
@@ -212,7 +212,7 @@ impl<'a> CaseReporter<'a> {
         let Some(index) = self.open.iter().rposition(|open| open.case == case) else { return };
         let open = self.open.remove(index);
         self.current = None;
-        let CaseResult { outcome, reason, duration } = result;
+        let CaseResult { outcome, reason, duration, rerun } = result;
         let is_held = self.has_only_case && open.parent.is_none();
         let duration = duration.or_else(|| is_held.then(|| open.started.elapsed()));
         let duration_us = duration.map(|it| u64::try_from(it.as_micros()).unwrap_or(u64::MAX));
@@ -235,7 +235,7 @@ impl<'a> CaseReporter<'a> {
                 self.record_result(open.path, !has_problem, is_skipped);
             }
         }
-        let finished = Notification::CaseFinished { case, outcome, reason, duration_us };
+        let finished = Notification::CaseFinished { case, outcome, reason, duration_us, rerun };
         if self.session.interrupted() {
             return;
         }
@@ -250,11 +250,37 @@ impl<'a> CaseReporter<'a> {
     fn report_end(&mut self) {
         let Some((case, finished)) = self.held_end.take() else { return };
         if !self.session.forward(&finished)
-            && let Notification::CaseFinished { outcome, duration_us, .. } = finished
+            && let Notification::CaseFinished { outcome, duration_us, rerun, .. } = finished
         {
             let reason = Some("the reason is longer than 16 MiB".to_owned());
             let end = Notification::CaseFinished { case, outcome, reason, duration_us, rerun };
             self.session.forward(&end);
+        }
+    }
+
+    /// A top-level case has finished, perhaps for a second time.
+    fn record_result(&mut self, name: String, has_passed: bool, is_skipped: bool) {
+        self.finished_here.insert(name.clone());
+        match self.results.entry(name) {
+            Entry::Occupied(mut before) => *before.get_mut() &= has_passed,
+            Entry::Vacant(place) => {
+                place.insert(has_passed);
+                self.skipped += usize::from(is_skipped);
+            }
+        }
+    }
+
+    /// Reports the end of a case that is not open: a problem, if it did not pass.
+    fn report_unmatched(&mut self, path: &str, result: CaseResult) {
+        let text = format!("the program finished `{path}`, which is not running");
+        match result.outcome {
+            None | Some(Outcome::Passed | Outcome::Skipped) => {
+                self.message(None, MessageKind::Report, format!("warning: {text}"), None);
+            }
+            Some(_) => {
+                let reason = result.reason.map(|reason| format!(": {reason}")).unwrap_or_default();
+                self.test_error(format!("{text}{reason}"));
+            }
         }
     }
 

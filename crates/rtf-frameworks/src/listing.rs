@@ -9,6 +9,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 use rtf_model::protocol::SESSION_VARIABLE;
+use rtf_model::{INTERPRETER_BYTES, Interpreter};
 use rtf_process::tree;
 use rustix::process::{Pid, Signal, kill_process_group};
 
@@ -49,6 +50,7 @@ pub fn run(mut command: Command, limit: Duration) -> Result<Listed, ListError> {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     command.process_group(0).env_remove(SESSION_VARIABLE);
     let program = command.get_program().to_string_lossy().into_owned();
+    rtf_host::reset_signals(&mut command);
     let started = own_child::spawn(&mut command);
     let mut child =
         started.map_err(|error| ListError::new(not_started(command.get_program(), &error)))?;

@@ -217,7 +217,7 @@ fn ask(store: &Store, (runs, tests): (u32, u32)) -> Result<Vec<String>, Box<dyn 
     let changes = timed("changes", || Ok(store.changes(&all, &any)?))?;
     let name = |test: u32| format!("Test{test:04}");
     let planted = (0..tests).filter(|test| is_flaky(*test)).map(name).collect();
-    check("flaky", &flaky.iter().map(|it| it.identity.test.clone()).collect(), &planted)?;
+    check("flaky", &flaky.tests.iter().map(|it| it.identity.test.clone()).collect(), &planted)?;
     let large = changes.iter().filter(|it| {
         it.series.is_some() && it.change.size.is_none_or(|size| size.fraction.abs() >= 0.05)
     });

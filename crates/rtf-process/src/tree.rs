@@ -21,6 +21,7 @@ use rtf_model::LeakedProcess;
 use rtf_model::protocol::{FORK_SERVER_VARIABLE, OWNER_VARIABLE, SCOPE_VARIABLE};
 
 use crate::unix;
+pub use members::{SignalReach, Tree};
 pub use sweep::{Effort, await_ending, orphans, sweep_if};
 
 const SIGKILL: i32 = 9;

@@ -23,7 +23,7 @@ use rustix::net::{
 };
 use rustix::process::{Pid, Signal, WaitOptions, kill_process, waitpid};
 
-use crate::{elf, preload, report_dir};
+use crate::{elf, own_child, preload, report_dir};
 
 const LIBRARY: &str = "librtf-fork-server.so";
 
@@ -100,6 +100,7 @@ impl ForkServer {
         command.env(PROGRAM_FORKS_VARIABLE, format!("{}{point}", theirs.as_raw_fd()));
         command.env(BIND_VARIABLE, "1");
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        rtf_host::reset_signals(&mut command);
         command.process_group(0);
         let process = own_child::spawn(&mut command).ok()?;
         Some(Self { socket, process, session, report })

@@ -22,6 +22,7 @@ use super::{TestRun, stack};
 use crate::case::Selection;
 use crate::case_reporter::CaseReporter;
 use crate::framework::{Garbage, Launch, OutputStream, ReportChannel, ReportReader};
+use crate::last_output::LastOutput;
 use crate::{listing, report_dir};
 
 /// How much is read at once.
@@ -77,7 +78,7 @@ pub(super) fn run(
     test.running.set(None);
     let status = wait_for(pid).map_err(|error| format!("the program was lost: {error}"))?;
     process.drain(cases);
-    let RunningProcess { mut reader, mut termination, last_error, .. } = process;
+    let RunningProcess { mut reader, mut termination, last_output, .. } = process;
     if test.is_stopping() {
         termination = Termination::Stopped;
     }
@@ -95,7 +96,7 @@ pub(super) fn run(
     if !matches!(termination, Termination::Stopped) {
         cases.leave(test.sweep(is_killed.then_some(pid)));
     }
-    Ok(ProcessEnd { status, termination, last_error_line: last_error.text(), crash_reason })
+    Ok(ProcessEnd { status, termination, last_output, crash_reason })
 }
 
 /// Starts a process: forks it if there is a fork server, which is given up when it fails.

@@ -72,7 +72,7 @@ fn flaky(page: &mut ConsoleLines, record: &Record) {
             let attempts = words::count(retried.attempts, "attempt");
             page.line(&format!("  {name}  {attempts}"));
             for (verdict, reason) in retried.before {
-                page.fact("before", &format!("{verdict}: {}", words::first_line(reason)));
+                page.fact("before", &format!("{verdict}: {}", words::short_line(reason)));
             }
         }
     }

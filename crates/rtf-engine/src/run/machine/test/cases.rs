@@ -10,6 +10,7 @@ use rtf_model::{
 
 use super::TestRun;
 use super::carried_cases::{CarriedCases, CaseHistory};
+use super::case_reruns::{CaseName, CaseReruns};
 use crate::run::machine::context::{Context, error_message};
 use crate::run::machine::judge::{Judgement, TestProblem, describe_leak, judge, leak_problem};
 use rtf_plan::plan::{AfterCollapse, TestPlan};
@@ -247,8 +248,8 @@ impl TestRun<'_> {
         }
         let (id, parent) = (start.case, start.parent);
         let (first_problem, inner_problem, leak) = (None, None, None);
-        cases.open.push(OpenCase { id, parent, path, first_problem, inner_problem, leak });
-        let started = CaseStarted { test: self.plan.id, start: CaseStart { name, ..start } };
+        cases.open.push(OpenCase { id, parent, name, path, first_problem, inner_problem, leak });
+        let started = CaseStarted { test: self.plan.id, start };
         if let Some(history) = &mut cases.history {
             history.start(&started.start, cx.now());
             if is_repeated && parent.is_none() {
@@ -354,7 +355,15 @@ impl TestRun<'_> {
             cx.emit(EventKind::CaseStarted(Box::new(started)));
             let (first_problem, inner_problem) = (None, None);
             let (id, parent, name) = (case, None, due.next());
-            self.cases.open.push(OpenCase { id, parent, name, path, first_problem, inner_problem });
+            self.cases.open.push(OpenCase {
+                id,
+                parent,
+                name,
+                path,
+                first_problem,
+                inner_problem,
+                leak: None,
+            });
             let result = match ended {
                 Some((verdict, reason)) => {
                     let (verdict, reason, innermost) = (*verdict, reason.clone(), None);

@@ -53,8 +53,7 @@ impl TestRun<'_> {
         self.stopwatch = None;
         self.clear(TestTimer::Slow, cx);
         self.output.finish(cx);
-        self.left.extend_from_slice(&leaked);
-        cx.report_leaked(self.source(), leaked);
+        self.record_left(leaked, cx);
         (self.evidence.exit, self.evidence.released) = (exit, self.is_released);
         let verdict = judge(&self.evidence, self.phase).verdict;
         let may_have_collapsed = self.has_fixtures && self.evidence.stopped.is_none();
@@ -76,7 +75,7 @@ impl TestRun<'_> {
                 killed_text(&left).into_iter().for_each(|text| *reason += &format!("; {text}"));
             }
             _ => {
-                self.leak = leak_problem(self.plan.settings.leaks, &left);
+                self.left.extend_from_slice(&left);
                 cx.report_leaked(self.source(), left);
             }
         }
