@@ -33,6 +33,7 @@ def main() -> int:
         hangs(lesson, "application", "yarpdev", f"{HEAD} -> /reader is lost: the port {HEAD}")
         does_not_start(lesson, "broken", "Could not find device <noSuchDevice>")
         does_not_start(lesson, "missing", "cannot run no-such-module on localhost")
+        ends_badly(lesson)
         in_parallel(lesson)
         recorded(lesson)
         as_in_yarp(lesson)
@@ -56,6 +57,21 @@ def does_not_start(lesson: Lesson, application: str, expected: str) -> None:
     expect("exit code", run.wait(), 1)
     expect("skipped", len(list(run.events("test-skipped"))), 1)
     expect_in(expected, run.reason("fixture-broken"))
+    lesson.nothing_left()
+
+
+def ends_badly(lesson: Lesson) -> None:
+    """Modules that end badly when they are stopped make the run red; the manager ignores it."""
+    run = lesson.start("ending.xml", "ends-badly")
+    expect("exit code", run.wait(), 1)
+    expect("verdicts", list(run.verdicts().values()), ["passed"])
+    (problem,) = run.problems()
+    expect_in("module `python3 ../ending.py 3` ended with exit code 3 after SIGTERM", problem)
+    expect_in("module `python3 ../ending.py 11` was killed by SIGSEGV after SIGTERM", problem)
+    expect("the module that ended well", "ending.py 0" in problem, False)
+    lesson.nothing_left()
+    run = lesson.start("ending.xml", "may-die", "--set=options=--may-die python3")
+    expect("exit code", run.wait(), 0)
     lesson.nothing_left()
 
 
