@@ -151,9 +151,7 @@ fn exception(lines: &[&str], index: usize) -> Option<usize> {
 fn is_any(line: &str, words: &[&str]) -> bool {
     let lower = format!(" {}", line.to_lowercase());
     let contains = |word: &&str| lower.contains(*word);
-    words.iter().any(|word| contains(word))
-        && !OTHERS.iter().any(|word| contains(word))
-        && !is_frame(line)
+    words.iter().any(&contains) && !OTHERS.iter().any(contains) && !is_frame(line)
 }
 
 fn is_frame(line: &str) -> bool {
@@ -176,119 +174,115 @@ mod tests {
     use super::*;
 
     /// Outputs as they were printed, and their reasons.
-    #[test]
-    fn the_line_that_says_why_is_found_in_real_outputs() {
-        for (output, reason) in [
-            (
-                "Traceback (most recent call last):\n  File \"e.py\", line 3, in a\n    1/0\n    ~^~\n\
+    const OUTPUTS: &[(&str, &str)] = &[
+        (
+            "Traceback (most recent call last):\n  File \"e.py\", line 3, in a\n    1/0\n    ~^~\n\
                  ZeroDivisionError: division by zero\n\n\
                  The above exception was the direct cause of the following exception:\n\n\
                  Traceback (most recent call last):\n  File \"e.py\", line 6, in <module>\n    a()\n\
                  ValueError: no arm\nat all",
-                "ValueError: no arm",
-            ),
-            (
-                "up\nTraceback (most recent call last):\n  File \"t.py\", line 2, in <module>\n    time.sleep(9)\n\
+            "ValueError: no arm",
+        ),
+        (
+            "up\nTraceback (most recent call last):\n  File \"t.py\", line 2, in <module>\n    time.sleep(9)\n\
                  KeyboardInterrupt",
-                "KeyboardInterrupt",
-            ),
-            (
-                "[talker-1] Traceback (most recent call last):\n[talker-1]   File \"t.py\", line 1\n\
+            "KeyboardInterrupt",
+        ),
+        (
+            "[talker-1] Traceback (most recent call last):\n[talker-1]   File \"t.py\", line 1\n\
                  [talker-1] arm.NotConnected: joint 3\n[talker-1] bye",
-                "[talker-1] arm.NotConnected: joint 3",
-            ),
-            (
-                "  File \"s.py\", line 1\n    x = (\n        ^\nSyntaxError: '(' was never closed",
-                "SyntaxError: '(' was never closed",
-            ),
-            (
-                "python3: can't open file '/x.py': [Errno 2] No such file or directory",
-                "python3: can't open file '/x.py': [Errno 2] No such file or directory",
-            ),
-            ("/usr/bin/python3: No module named sim", "/usr/bin/python3: No module named sim"),
-            ("sh: 1: nosuch: not found", "sh: 1: nosuch: not found"),
-            ("bash: nosuch: command not found", "bash: nosuch: command not found"),
-            (
-                "sh: 1: cannot create /nodir/x: Directory nonexistent\nbye",
-                "sh: 1: cannot create /nodir/x: Directory nonexistent",
-            ),
-            (
-                "env: 'nosuch': No such file or directory",
-                "env: 'nosuch': No such file or directory",
-            ),
-            (
-                "ready\n./m: error while loading shared libraries: libl.so: cannot open shared object file: \
+            "[talker-1] arm.NotConnected: joint 3",
+        ),
+        (
+            "  File \"s.py\", line 1\n    x = (\n        ^\nSyntaxError: '(' was never closed",
+            "SyntaxError: '(' was never closed",
+        ),
+        (
+            "python3: can't open file '/x.py': [Errno 2] No such file or directory",
+            "python3: can't open file '/x.py': [Errno 2] No such file or directory",
+        ),
+        ("/usr/bin/python3: No module named sim", "/usr/bin/python3: No module named sim"),
+        ("sh: 1: nosuch: not found", "sh: 1: nosuch: not found"),
+        ("bash: nosuch: command not found", "bash: nosuch: command not found"),
+        (
+            "sh: 1: cannot create /nodir/x: Directory nonexistent\nbye",
+            "sh: 1: cannot create /nodir/x: Directory nonexistent",
+        ),
+        ("env: 'nosuch': No such file or directory", "env: 'nosuch': No such file or directory"),
+        (
+            "ready\n./m: error while loading shared libraries: libl.so: cannot open shared object file: \
                  No such file or directory",
-                "./m: error while loading shared libraries: libl.so: cannot open shared object file: \
+            "./m: error while loading shared libraries: libl.so: cannot open shared object file: \
                  No such file or directory",
-            ),
-            (
-                "./m: symbol lookup error: ./m: undefined symbol: f",
-                "./m: symbol lookup error: ./m: undefined symbol: f",
-            ),
-            (
-                "./m: /lib/x86_64-linux-gnu/libc.so.6: version `GLIBC_2.38' not found (required by ./m)",
-                "./m: /lib/x86_64-linux-gnu/libc.so.6: version `GLIBC_2.38' not found (required by ./m)",
-            ),
-            (
-                "terminate called after throwing an instance of 'std::runtime_error'\n  what():  no arm\n\
+        ),
+        (
+            "./m: symbol lookup error: ./m: undefined symbol: f",
+            "./m: symbol lookup error: ./m: undefined symbol: f",
+        ),
+        (
+            "./m: /lib/x86_64-linux-gnu/libc.so.6: version `GLIBC_2.38' not found (required by ./m)",
+            "./m: /lib/x86_64-linux-gnu/libc.so.6: version `GLIBC_2.38' not found (required by ./m)",
+        ),
+        (
+            "terminate called after throwing an instance of 'std::runtime_error'\n  what():  no arm\n\
                  bash:  4632 Aborted                 ./t",
-                "what():  no arm",
-            ),
-            (
-                "u: u.cpp:2: int main(): Assertion `c==9' failed.\nstopping",
-                "u: u.cpp:2: int main(): Assertion `c==9' failed.",
-            ),
-            (
-                "\nthread 'main' (4692) panicked at r.rs:1:12:\nno arm\nstack backtrace:\n   \
+            "what():  no arm",
+        ),
+        (
+            "u: u.cpp:2: int main(): Assertion `c==9' failed.\nstopping",
+            "u: u.cpp:2: int main(): Assertion `c==9' failed.",
+        ),
+        (
+            "\nthread 'main' (4692) panicked at r.rs:1:12:\nno arm\nstack backtrace:\n   \
                  0: std::panicking::begin_panic::<&str>\n             at /rustc/std/src/panicking.rs:761:5\n\
                  note: Some details are omitted, run with `RUST_BACKTRACE=full` for a verbose backtrace.",
-                "no arm",
-            ),
-            (
-                "-e:1:in `run': no arm (RuntimeError)\n\tfrom -e:1:in `<main>'",
-                "-e:1:in `run': no arm (RuntimeError)",
-            ),
-            (
-                "lua: arm.lua:3: no arm\nstack traceback:\n\t[C]: in function 'error'",
-                "lua: arm.lua:3: no arm",
-            ),
-            (
-                "node:internal/modules/cjs/loader:1210\n  throw err;\n  ^\n\nError: Cannot find module '/x.js'\n\
+            "no arm",
+        ),
+        (
+            "-e:1:in `run': no arm (RuntimeError)\n\tfrom -e:1:in `<main>'",
+            "-e:1:in `run': no arm (RuntimeError)",
+        ),
+        (
+            "lua: arm.lua:3: no arm\nstack traceback:\n\t[C]: in function 'error'",
+            "lua: arm.lua:3: no arm",
+        ),
+        (
+            "node:internal/modules/cjs/loader:1210\n  throw err;\n  ^\n\nError: Cannot find module '/x.js'\n\
                  Require stack:\n- /[eval]\n    at Module._load (node:internal/modules:1038:27)",
-                "Error: Cannot find module '/x.js'",
-            ),
-            (
-                "Exception in thread \"main\" java.lang.IllegalStateException: no arm\n\tat X.main(X.java:1)",
-                "Exception in thread \"main\" java.lang.IllegalStateException: no arm",
-            ),
-            (
-                "panic: no arm\n\ngoroutine 1 [running]:\nmain.main()\n\t/g.go:2 +0x25\nexit status 2",
-                "panic: no arm",
-            ),
-            ("package 'x' not found", "package 'x' not found"),
-            (
-                "[INFO] [launch]: All log files can be found below /l\n\
+            "Error: Cannot find module '/x.js'",
+        ),
+        (
+            "Exception in thread \"main\" java.lang.IllegalStateException: no arm\n\tat X.main(X.java:1)",
+            "Exception in thread \"main\" java.lang.IllegalStateException: no arm",
+        ),
+        (
+            "panic: no arm\n\ngoroutine 1 [running]:\nmain.main()\n\t/g.go:2 +0x25\nexit status 2",
+            "panic: no arm",
+        ),
+        ("package 'x' not found", "package 'x' not found"),
+        (
+            "[INFO] [launch]: All log files can be found below /l\n\
                  [ERROR] [launch]: Caught exception in launch: no file\nshutting down",
-                "[ERROR] [launch]: Caught exception in launch: no file",
-            ),
-            ("make: *** [Makefile:2: all] Error 2\nbye", "make: *** [Makefile:2: all] Error 2"),
-            (
-                "\x1b[31mERROR: the bus is silent\x1b[0m\r\n0 errors recovered",
-                "ERROR: the bus is silent",
-            ),
-            (
-                "[WARN] error: retried\nwaiting\nthe arm is not connected\n\n",
-                "the arm is not connected",
-            ),
-            (
-                "bash:  5925 Segmentation fault      ./sim",
-                "bash:  5925 Segmentation fault      ./sim",
-            ),
-        ] {
+            "[ERROR] [launch]: Caught exception in launch: no file",
+        ),
+        ("make: *** [Makefile:2: all] Error 2\nbye", "make: *** [Makefile:2: all] Error 2"),
+        (
+            "\x1b[31mERROR: the bus is silent\x1b[0m\r\n0 errors recovered",
+            "ERROR: the bus is silent",
+        ),
+        (
+            "[WARN] error: retried\nwaiting\nthe arm is not connected\n\n",
+            "the arm is not connected",
+        ),
+        ("bash:  5925 Segmentation fault      ./sim", "bash:  5925 Segmentation fault      ./sim"),
+    ];
+
+    #[test]
+    fn the_line_that_says_why_is_found_in_real_outputs() {
+        for (output, reason) in OUTPUTS {
             let lines: Vec<&str> = output.split('\n').collect();
             let found = FailureLine::find(&lines).map(|line| line.text);
-            assert_eq!(found.as_deref(), Some(reason), "{output}");
+            assert_eq!(found.as_deref(), Some(*reason), "{output}");
         }
         assert_eq!(explain_failure("it ended", &["", " ", "\x1b[0m"]), "it ended");
         assert_eq!(explain_failure("it ended", &["up", ""]), "it ended; its last line was: up");

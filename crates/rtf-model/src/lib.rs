@@ -6,7 +6,7 @@
 //! [`protocol`] module holds the messages between the runner and the host
 //! processes that load plug-ins.
 //!
-//! This crate is plain data: no I/O, no threads, no clock. [`plain_text`] and [`FailureLine`] read
+//! This crate is plain data: no I/O, no threads, no clock. [`plain_text()`] and [`FailureLine`] read
 //! what a program printed.
 
 mod clock;

@@ -35,7 +35,7 @@ pub struct HookContext<'a> {
 /// A hook that the dead runner has started.
 enum StartedHook {
     /// It is running, or has just ended.
-    Running(HookProcess),
+    Running(Box<HookProcess>),
     /// It has ended, and its result was lost with the runner.
     Ended,
     /// It has done nothing yet, or was never started.
@@ -67,7 +67,7 @@ pub fn run(
     };
     let mut events = vec![TimedEvent { at: started, kind: start.event() }];
     let process = match found {
-        StartedHook::Running(process) => Ok(process),
+        StartedHook::Running(process) => Ok(*process),
         StartedHook::Ended => Err("it ended, and how was lost with the runner".to_owned()),
         StartedHook::NotBegun if signals.requests_kill() => Err(HOOK_NOT_RUN.to_owned()),
         StartedHook::NotBegun if let Err(problem) = &context.resolved => Err(problem.clone()),
@@ -95,14 +95,14 @@ fn adopt(hook: &HookSpec, running: RunningHook) -> StartedHook {
     match running.pid {
         Some(pid) if tree::is_child(pid) => {
             repeat_request(hook, &running.streams);
-            StartedHook::Running(HookProcess {
+            StartedHook::Running(Box::new(HookProcess {
                 hook: hook.id,
                 pid,
                 scope: running.start.scope,
                 streams: running.streams,
                 deadline: running.at + hook.limit,
                 judgement: HookJudgement::adopted(hook.plugin.is_some(), hook.limit),
-            })
+            }))
         }
         Some(_) => StartedHook::Ended,
         None => {

@@ -70,7 +70,7 @@ fn joined(text: &str) -> Option<String> {
     let is_default = |node: &Node<'_, '_>| {
         is_named(*node, "participant") && node.attribute("is_default_profile") == Some("true")
     };
-    let Some(mut node) = profiles.children().filter(is_default).last() else {
+    let Some(mut node) = profiles.children().rfind(is_default) else {
         let inner = elements(&PATH, INTERVAL);
         return Some(append(text, profiles, &elements(&[PARTICIPANT], &inner)));
     };

@@ -69,11 +69,11 @@ pub(super) struct FinishedCase {
 #[derive(Debug)]
 enum CaseResult {
     /// As its host reports it.
-    OfCase(Verdict, Option<String>),
+    Case(Verdict, Option<String>),
     /// The same, and another attempt of it follows.
-    OfAttempt(Verdict, Option<String>),
+    Attempt(Verdict, Option<String>),
     /// The test was stopped or its process ended, which is no problem of the case alone.
-    OfTest {
+    Test {
         verdict: Verdict,
         reason: Option<String>,
         /// The innermost case that was open in it.
@@ -278,8 +278,8 @@ impl TestRun<'_> {
             Some(Outcome::TimedOut) => Verdict::TimedOut,
         };
         let result = match rerun && self.cases.is_top(number) {
-            true => CaseResult::OfAttempt(verdict, reason),
-            false => CaseResult::OfCase(verdict, reason),
+            true => CaseResult::Attempt(verdict, reason),
+            false => CaseResult::Case(verdict, reason),
         };
         self.end_case(number, result, duration_us, cx);
     }
@@ -326,12 +326,12 @@ impl TestRun<'_> {
             let result = match (ended, has_problem) {
                 (true, _) => {
                     let innermost = open_inside(&mut innermost, open);
-                    CaseResult::OfTest { verdict, reason: reason.clone(), innermost }
+                    CaseResult::Test { verdict, reason: reason.clone(), innermost }
                 }
-                (false, true) => CaseResult::OfCase(Verdict::Passed, None),
+                (false, true) => CaseResult::Case(Verdict::Passed, None),
                 (false, false) => {
                     let reason = "the test ended before the case".to_owned();
-                    CaseResult::OfCase(Verdict::Error, Some(reason))
+                    CaseResult::Case(Verdict::Error, Some(reason))
                 }
             };
             self.end_case(open.id, result, None, cx);
@@ -367,9 +367,9 @@ impl TestRun<'_> {
             let result = match ended {
                 Some((verdict, reason)) => {
                     let (verdict, reason, innermost) = (*verdict, reason.clone(), None);
-                    CaseResult::OfTest { verdict, reason, innermost }
+                    CaseResult::Test { verdict, reason, innermost }
                 }
-                None => CaseResult::OfCase(Verdict::Error, Some(due.not_started())),
+                None => CaseResult::Case(Verdict::Error, Some(due.not_started())),
             };
             self.end_case(case, result, None, cx);
         }
@@ -387,12 +387,12 @@ impl TestRun<'_> {
         let mut open = self.cases.open.remove(index);
         let (test, phase) = (self.plan.id, self.phase);
         let mut problem = open.take_problem();
-        let rerun = matches!(result, CaseResult::OfAttempt(..));
+        let rerun = matches!(result, CaseResult::Attempt(..));
         let (is_of_test, mut verdict, mut reason, mut decided_by) = match result {
-            CaseResult::OfCase(verdict, reason) | CaseResult::OfAttempt(verdict, reason) => {
+            CaseResult::Case(verdict, reason) | CaseResult::Attempt(verdict, reason) => {
                 (false, verdict, reason, None)
             }
-            CaseResult::OfTest { verdict, reason, innermost } => (true, verdict, reason, innermost),
+            CaseResult::Test { verdict, reason, innermost } => (true, verdict, reason, innermost),
         };
         if let (Verdict::Passed, None, Some(leak)) = (verdict, &problem, open.leak.take()) {
             (verdict, reason) = (Verdict::Error, Some(leak));

@@ -183,15 +183,25 @@ pub(super) fn act(world: &mut World<'_>, choice: u8, which: usize, shared: bool)
         13 => world.feed(notify(report(choice))),
         14 if choice < 112 => world.feed(question_or_finding(host, which, choice)),
         14 => drop((!world.deadlines.is_empty()).then(|| world.next_deadline())),
-        _ if choice == 255 => world.stop(StopLevel::Kill),
-        _ if choice == 239 => world.stop(StopLevel::TearDown),
-        _ if choice == 207 => world.stop(StopLevel::KillHooks),
+        _ if stop_run(world, choice) => {}
         _ if choice == 223 => world.feed(Input::Skip("a user".to_owned())),
         _ if choice % 32 == 15 => world.feed(stop_test(which)),
         _ => {
             world.feed(Input::Host(host, ProcessEvent::ProtocolViolated("it wrote `x`".to_owned())))
         }
     }
+}
+
+/// Requests the end of the run for some choices.
+fn stop_run(world: &mut World<'_>, choice: u8) -> bool {
+    let level = match choice {
+        255 => StopLevel::Kill,
+        239 => StopLevel::TearDown,
+        207 => StopLevel::KillHooks,
+        _ => return false,
+    };
+    world.stop(level);
+    true
 }
 
 fn end_all(world: &mut World<'_>) {
