@@ -228,25 +228,15 @@ def test_doctests_are_cases(tmp_path: Path) -> None:
     assert "Expected:\n    3\nGot:\n    2" in failure["text"]
 
 
-def with_outcome(tmp_path: Path, outcome: str) -> SessionHost:
+def test_a_failure_with_another_outcome_is_that_of_an_attempt(tmp_path: Path) -> None:
     hook = (
         "@pytest.hookimpl(hookwrapper=True)\n"
         "def pytest_runtest_makereport(item, call):\n"
         "    report = (yield).get_result()\n"
-        f"    if report.failed: report.outcome = '{outcome}'\n"
+        "    if report.failed: report.outcome = 'rerun'\n"
     )
     write(tmp_path, hook, "conftest.py")
-    return run(tmp_path, "def test_a(): assert 1 == 2\n")
-
-
-def test_a_report_with_another_outcome_is_a_message(tmp_path: Path) -> None:
-    (message,) = with_outcome(tmp_path, "odd").of("message")
-    assert message["kind"] == "report"
-    assert message["text"].startswith("odd: ")
-
-
-def test_a_report_with_the_outcome_rerun_is_a_failure_of_an_attempt(tmp_path: Path) -> None:
-    host = with_outcome(tmp_path, "rerun")
+    host = run(tmp_path, "def test_a(): assert 1 == 2\n")
     assert [message["kind"] for message in host.of("message")] == ["failure", "report"]
     (finished,) = host.of("case-finished")
     assert finished["rerun"] is True
