@@ -40,6 +40,14 @@ cpp_programs() {
   done
 }
 
+# Compiles the program of tests/frameworks/descendants that needs no framework.
+program_with_descendants() {
+  local program=$out/descendants_test sources=tests/frameworks/descendants
+  if [ ! -e "$program" ] || [ -n "$(find $sources -name '*.?pp' -newer "$program")" ]; then
+    quietly c++ -std=c++17 -g -O0 -Wall -o "$program" $sources/descendants_test.cpp
+  fi
+}
+
 # Only one process at a time may install or build it.
 exec 8>"$CACHE/framework-$type.lock"
 flock 8

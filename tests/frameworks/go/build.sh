@@ -4,6 +4,6 @@
 : "${source:?}"
 PATH=$(tools/go.sh):$PATH
 setting PATH "$PATH"
-for package in arm promises; do
+for package in arm promises descendants; do
   (cd "$source/$package" && quietly go test -list . .)
 done

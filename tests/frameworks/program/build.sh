@@ -1,3 +1,4 @@
 # shellcheck shell=bash
-# Programs without a framework; they need only a shell.
-:
+# Programs without a framework.
+need_packages g++
+program_with_descendants

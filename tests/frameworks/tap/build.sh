@@ -1,6 +1,7 @@
 # shellcheck shell=bash
 # Real producers of TAP: Perl's Test::More, bats, Node's test runner, tape (npm), tap.py (PyPI).
-need_packages perl bats
+need_packages perl bats g++
+program_with_descendants
 path=$(tools/node.sh)
 modules=$CACHE/tape-5.10.2
 if [ ! -e "$modules/complete" ]; then

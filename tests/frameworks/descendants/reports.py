@@ -1,0 +1,105 @@
+"""The verdicts that frameworks themselves report about the programs of `check.py`."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import tempfile
+import xml.etree.ElementTree as ElementTree
+from collections import Counter
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+SECONDS = 120
+
+Verdicts = dict[str, str]
+"""By case. What is outside of the cases has the name `OUTSIDE`."""
+
+OUTSIDE = ""
+
+TAP_PARSER = r"""
+my $tap = TAP::Parser->new({exec => \@ARGV});
+while (my $line = $tap->next) {
+    printf "%s\t%s\n", $line->is_actual_ok ? "ok" : "failed", $line->description if $line->is_test;
+}
+print "failed\t\n" if $tap->parse_errors or $tap->exit && !$tap->failed;
+"""
+"""The parser of `prove` prints each test, and one without a name for other problems, also for a
+number that occurs twice."""
+
+
+def program(command: list[str]) -> Verdicts:
+    """The exit code of a program."""
+    return {OUTSIDE: "failed" if run(command).returncode else "passed"}
+
+
+def tap(command: list[str]) -> Verdicts:
+    """The tests of a program, as `prove` reads them; the second one with a name is `NAME#2`."""
+    verdicts: Verdicts = {}
+    names: Counter[str] = Counter()
+    for line in run(["perl", "-MTAP::Parser", "-e", TAP_PARSER, *command]).stdout.splitlines():
+        result, _, name = line.partition("\t")
+        name = name.removeprefix("- ")
+        names[name] += 1
+        add(verdicts, name if names[name] == 1 else f"{name}#{names[name]}", result != "ok")
+    return verdicts
+
+
+def ctest(build: str) -> Verdicts:
+    """The tests of a build directory."""
+    with tempfile.TemporaryDirectory() as directory:
+        file = Path(directory) / "junit.xml"
+        run(["ctest", "--test-dir", build, "--output-junit", str(file)])
+        return junit_file(file, "{name}")
+
+
+def pytest(command: list[str], cases: list[str]) -> Verdicts:
+    """Cases of one file."""
+    with tempfile.TemporaryDirectory() as directory:
+        file = Path(directory) / "junit.xml"
+        run([*command, f"--junit-xml={file}", *cases], str(Path(cases[0]).parent))
+        return junit_file(file, "{classname}.py::{name}")
+
+
+def go(package: str) -> Verdicts:
+    """The tests of a package."""
+    verdicts: Verdicts = {}
+    for line in run(["go", "test", "-json", "-count=1"], package).stdout.splitlines():
+        event = json.loads(line)
+        if event["Action"] in ("pass", "fail") and "Test" in event:
+            add(verdicts, event["Test"], event["Action"] == "fail")
+    return verdicts
+
+
+def junit_file(file: Path, name: str) -> Verdicts:
+    """The test cases of a file; `name` is composed of their attributes."""
+    verdicts: Verdicts = {}
+    for case in ElementTree.parse(file).iter("testcase"):
+        has_problem = any(child.tag in ("failure", "error") for child in case)
+        add(verdicts, name.format(**case.attrib), has_problem)
+    return verdicts
+
+
+def add(verdicts: Verdicts, name: str, has_failed: bool) -> None:
+    """Adds a result; of several ones, the worst counts."""
+    if has_failed or name not in verdicts:
+        verdicts[name] = "failed" if has_failed else "passed"
+
+
+def run(
+    command: list[str], directory: str = str(ROOT), **variables: str
+) -> subprocess.CompletedProcess[str]:
+    """Runs a program without rtf."""
+    return subprocess.run(
+        command,
+        cwd=directory,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        timeout=SECONDS,
+        env={**os.environ, "PYTHONPATH": str(ROOT / "sdk/python"), **variables},
+        check=False,
+    )

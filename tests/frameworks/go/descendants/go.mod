@@ -1,0 +1,3 @@
+module example.org/descendants
+
+go 1.20
