@@ -74,6 +74,12 @@ def pytest(*arguments: str) -> list[str]:
     return [python(), "-m", "pytest", *arguments]
 
 
+def cargo(package: str, test: str) -> list[str]:
+    """Runs one test of Rust."""
+    manifest = f"--manifest-path={package}/Cargo.toml"
+    return ["cargo", "test", "--offline", manifest, "--", "--exact", test]
+
+
 CASES = re.findall(r"CASE\((\w+)\)", (HERE / "descendants.hpp").read_text())
 CONTINUING = ["forks_and_returns", "forks_and_fails", "needs_a_fork_that_fails"]
 """Their child returns from the case, and continues with the program."""
@@ -183,6 +189,14 @@ CORPORA: dict[str, list[Corpus]] = {
             [str(HERE.parent / "go/descendants")],
             [ONE, SEPARATE],
             report=lambda package, _args: reports.go(package),
+        )
+    ],
+    "cargo": [
+        Corpus(
+            [str(HERE.parent / "cargo/descendants")],
+            [ONE, SEPARATE],
+            [*CASES, "runs_cargo_in_cargo"],
+            lambda package, case: cargo(package, case.partition("::")[2]),
         )
     ],
 }
