@@ -2,7 +2,6 @@
 
 with AUnit.Time_Measure;
 with RTF_AUnit_Cases;
-with RTF_Session;
 
 package body RTF_AUnit is
 
@@ -18,7 +17,7 @@ package body RTF_AUnit is
       if Options.Global_Timer then
          AUnit.Time_Measure.Start_Measure (Time);
       end if;
-      if RTF_Session.Is_Open then
+      if RTF_AUnit_Cases.Is_Available then
          RTF_AUnit_Cases.Run (Suite, Results, Options, Outcome);
       else
          AUnit.Test_Suites.Run (Suite, Options, Results, Outcome);

@@ -80,6 +80,8 @@ package body RTF_AUnit_Cases is
    --  Planned names that were not sent, as JSON.
    Unsent        : Unbounded_String;
 
+   Is_Running    : Boolean := False;
+
    --  The path of the open case; empty if there is none.
    Open_Case     : Unbounded_String;
    --  AUnit asks twice before some routines: the test that it asked for, until it starts.
@@ -154,7 +156,7 @@ package body RTF_AUnit_Cases is
       Done : int;
       pragma Unreferenced (Done);
    begin
-      if Length (Open_Case) > 0 then
+      if Length (Open_Case) > 0 and then not Is_Forked then
          Done := fflush (stdout);
          Send ("case-finished", """name"":" & Quoted (To_String (Open_Case)));
          Open_Case := Null_Unbounded_String;
@@ -177,8 +179,9 @@ package body RTF_AUnit_Cases is
          return True;
       end if;
       Finish_Case;
-      if not Is_Selected (Filter, T) then
-         return False;
+      if Is_Forked or else not Is_Selected (Filter, T) then
+         --  A forked process starts and finishes no case.
+         return Is_Selected (Filter, T);
       end if;
       declare
          Name : constant String := Unique (Name_Of (T), Started_Names);
@@ -251,8 +254,10 @@ package body RTF_AUnit_Cases is
 
    procedure Send_In_Case (Kind : String; Text : String; Location : String) is
    begin
+      --  Without rtf, only the program that runs the tests has a result.
       Send_Message
-        (Kind, Text,
+        ((if Is_Forked then "report" else Kind),
+         (if Is_Forked then "in a forked process: " else "") & Text,
          (if Length (Open_Case) = 0 then ""
           else ",""case"":" & Quoted (To_String (Open_Case))) & Location);
    end Send_In_Case;
@@ -277,6 +282,8 @@ package body RTF_AUnit_Cases is
         (Message (Message'First .. Colon - 1), Natural'Value (Message (Colon + 1 .. Blank - 1)));
    end Location_In;
 
+   function Is_Available return Boolean is (Is_Open and then not (Is_Running or Is_Forked));
+
    procedure Run
      (Suite   : AUnit.Test_Suites.Access_Test_Suite;
       Results : in out AUnit.Test_Results.Result'Class;
@@ -289,6 +296,7 @@ package body RTF_AUnit_Cases is
       Reported   : Reporting_Result (Results'Unchecked_Access);
       Each       : AUnit.Options.AUnit_Options := Options;
    begin
+      Is_Running := True;
       --  This runs nothing, but calls Register_Tests of all tests.
       Each.Filter := All_Cases'Unchecked_Access;
       AUnit.Test_Suites.Run (Suite, Each, No_Results, Outcome);
@@ -296,7 +304,10 @@ package body RTF_AUnit_Cases is
       Each.Filter := Selected'Unchecked_Access;
       AUnit.Test_Suites.Run (Suite, Each, Reported, Outcome);
       Finish_Case;
-      Send ("finished", "");
+      Is_Running := False;
+      if not Is_Forked then
+         Send ("finished", "");
+      end if;
    end Run;
 
 end RTF_AUnit_Cases;

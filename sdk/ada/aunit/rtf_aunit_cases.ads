@@ -8,6 +8,9 @@ with AUnit.Test_Suites;
 
 package RTF_AUnit_Cases is
 
+   --  Whether this run reports to rtf. One in a routine, or in a forked process, does not.
+   function Is_Available return Boolean;
+
    --  Runs a suite. All results are also added to Results.
    procedure Run
      (Suite   : AUnit.Test_Suites.Access_Test_Suite;

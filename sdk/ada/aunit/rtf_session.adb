@@ -43,7 +43,11 @@ package body RTF_Session is
    function C_Control (FD : int; Command : int; Value : int) return int
      with Import, Convention => C_Variadic_2, External_Name => "fcntl";
 
-   --  The socket in RTF_SESSION; -1 if there is none.
+   function C_Process_ID return int
+     with Import, Convention => C, External_Name => "getpid";
+
+   --  The socket in RTF_SESSION; -1 if there is none. Descendants that execute a program do not
+   --  have it: the variable becomes `FD:N`.
    function Open_Socket return int;
 
    --  The answer to a packet that was sent.
@@ -65,7 +69,8 @@ package body RTF_Session is
       Size : unsigned        := int'Size / 8;
       FD   : int;
    begin
-      if Text'Length < 4 or else Text (Text'First .. Text'First + 2) /= "fd:" then
+      if Text'Length < 4 or else Text (Text'First .. Text'First + 2) not in "fd:" | "FD:"
+      then
          return -1;
       end if;
       FD := int'Value (Text (Text'First + 3 .. Text'Last));
@@ -76,6 +81,7 @@ package body RTF_Session is
       if C_Control (FD, F_SETFD, FD_CLOEXEC) /= 0 then
          return -1;
       end if;
+      Ada.Environment_Variables.Set (Name, "FD:" & Text (Text'First + 3 .. Text'Last));
       --  So that a crash loses no complete line.
       declare
          use Interfaces.C_Streams;
@@ -92,7 +98,24 @@ package body RTF_Session is
 
    Socket : int := Open_Socket;
 
+   Owner : constant int := C_Process_ID;
+
    function Is_Open return Boolean is (Socket >= 0);
+
+   function Is_Forked return Boolean is (C_Process_ID /= Owner);
+
+   --  Whether a packet was sent.
+   function Has_Sent (Packet : String) return Boolean;
+
+   function Has_Sent (Packet : String) return Boolean is
+      Sent : long;
+   begin
+      loop
+         Sent := C_Send (Socket, Packet'Address, Packet'Length, MSG_NOSIGNAL);
+         exit when Sent >= 0 or else GNAT.OS_Lib.Errno /= EINTR;
+      end loop;
+      return Sent >= 0;
+   end Has_Sent;
 
    function Receive return String is
       First : Character := ' ';
@@ -114,20 +137,18 @@ package body RTF_Session is
    end Receive;
 
    function Exchange (Method : String; Fields : String) return String is
-      Packet : constant String :=
-        "{""method"":""" & Method & """,""params"":{" & Fields & "}}";
-      Sent   : long;
+      Call : constant String := """method"":""" & Method & """,""params"":{" & Fields & "}}";
    begin
       if not Is_Open then
          return "";
+      elsif Is_Forked then
+         --  The parent may wait for an answer at the same time, and another task may have had
+         --  the lock at the fork.
+         return (if Has_Sent ("{""answer"":false," & Call) then "0" else "");
       end if;
       GNAT.Task_Lock.Lock;
-      loop
-         Sent := C_Send (Socket, Packet'Address, Packet'Length, MSG_NOSIGNAL);
-         exit when Sent >= 0 or else GNAT.OS_Lib.Errno /= EINTR;
-      end loop;
       declare
-         Answer : constant String := (if Sent < 0 then "" else Receive);
+         Answer : constant String := (if Has_Sent ("{" & Call) then Receive else "");
       begin
          if Answer = "" then
             Socket := -1; --  the host has ended

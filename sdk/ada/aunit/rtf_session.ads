@@ -12,6 +12,10 @@ package RTF_Session is
    --  Whether rtf runs this program.
    function Is_Open return Boolean;
 
+   --  Whether this process was forked by the one that rtf runs. It can report measurements,
+   --  files and texts, but no results.
+   function Is_Forked return Boolean;
+
    --  Records a number, and returns whether it is within its limits. If it is not, the case
    --  fails and continues.
    function Measure
