@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from typing import TYPE_CHECKING
 
+from driver import PACKAGE
 from session_host import PYTEST, SessionHost, listed
 
 from rtf.frameworks.pytest_worker import Selection
@@ -170,6 +174,23 @@ def test_an_internal_error_is_reported(tmp_path: Path) -> None:
 def test_children_do_not_inherit_the_session(tmp_path: Path) -> None:
     write(tmp_path, "assert 'RTF_SESSION' not in os.environ\n", "conftest.py")
     assert run(tmp_path, "def test_a(): pass\n").code == 0
+
+
+def test_a_program_without_the_descriptor_of_the_session_reports_nothing() -> None:
+    deed = "import rtf.session; assert rtf.session.current().measure('speed', 1.0, high=2.0)"
+    environment = {**os.environ, "PYTHONPATH": str(PACKAGE), "RTF_SESSION": "fd:99"}
+    done = subprocess.run(
+        [sys.executable, "-c", deed],
+        env=environment,
+        stderr=subprocess.PIPE,
+        text=True,
+        check=False,
+    )
+    assert done.stderr == (
+        "rtf: the descriptor in RTF_SESSION is not open here: "
+        "results of this process are not reported\n"
+    )
+    assert done.returncode == 0
 
 
 def test_collection_errors_are_reported(tmp_path: Path) -> None:

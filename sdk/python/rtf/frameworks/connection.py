@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 import socket
+import sys
 import threading
 
 from rtf.host.channel import end_without_runner
@@ -31,6 +32,11 @@ _ACCEPTED = b"0"
 # A program in C++ that started this one has taken the session.
 _TAKEN = "FD:"
 
+_CLOSED = (
+    f"rtf: the descriptor in {SESSION_VARIABLE} is not open here: "
+    "results of this process are not reported\n"
+)
+
 _ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(",", ":"))
 
 
@@ -50,13 +56,17 @@ class Connection:
 
     @classmethod
     def from_environment(cls) -> Connection | None:
-        """Open the connection, and remove the variable. `None` without a host."""
+        """Open the connection, and remove the variable. `None` without a host that listens."""
         place = os.environ.pop(SESSION_VARIABLE, "")
         if not place or place.startswith(_TAKEN):
             return None
         scheme, _, number = place.partition(":")
         if scheme != "fd" or not number.isdecimal():
             raise ValueError(f"{SESSION_VARIABLE} is `{place}`, expected `fd:N`")
+        if not _is_session(int(number)):
+            # A program in between has closed it, as `subprocess` does.
+            sys.stderr.write(_CLOSED)
+            return None
         return cls(int(number))
 
     def is_ours(self) -> bool:
@@ -111,6 +121,15 @@ class Connection:
         if not answer:
             end_without_runner()
         return answer
+
+
+def _is_session(descriptor: int) -> bool:
+    """Whether a descriptor is a socket of a host."""
+    try:
+        with socket.socket(fileno=os.dup(descriptor)) as copy:
+            return copy.type == socket.SOCK_SEQPACKET
+    except OSError:
+        return False
 
 
 def portions(names: list[str]) -> Iterator[list[str]]:
