@@ -80,17 +80,25 @@ def cargo(package: str, test: str) -> list[str]:
     return ["cargo", "test", "--offline", manifest, "--", "--exact", test]
 
 
+MASTER = """
+  <env name="RTF_PYTHON" value="/usr/bin/python3"/>
+  <fixture name="master" type="process">
+    <command>roscore -p ${port:ros-master}</command>
+    <ready ros-node="/rosout"/>
+  </fixture>
+"""
 CASES = re.findall(r"CASE\((\w+)\)", (HERE / "descendants.hpp").read_text())
 CONTINUING = ["forks_and_returns", "forks_and_fails", "needs_a_fork_that_fails"]
 """Their child returns from the case, and continues with the program."""
 
 COMPILED = ["descendants_test", "twice_test"]
 PYTEST = str(HERE / "pytest/test_descendants.py")
-DEEDS = ["spawns_workers", "forks_workers", "forks_and_exits_at_once", "forks_and_aborts"]
+DEEDS = ["spawns_workers", "forks_and_exits_at_once", "forks_and_aborts"]
 DEEDS += ["has_an_environment_of_its_own", "reports_from_a_fork", "passes", "fails"]
 WORKERS = [f"test_deed[{deed}]" for deed in DEEDS]
 WORKERS += ["test_runs_pytest_in_pytest", "test_runs_pytest_in_a_process"]
-"""What works in a worker of pytest-xdist, which does not have the arguments of pytest."""
+"""What works in a worker of pytest-xdist. It has other arguments than pytest, and
+threads, so that a forked process can only end."""
 
 SELECTED = " ".join(f"test_descendants.py::{name}" for name in WORKERS)
 CORPORA: dict[str, list[Corpus]] = {
@@ -191,6 +199,34 @@ CORPORA: dict[str, list[Corpus]] = {
             report=lambda package, _args: reports.go(package),
         )
     ],
+    "aunit": [
+        Corpus(
+            ["descendants_test"],
+            [ONE],
+            report=lambda program, _args: reports.aunit(built("aunit", program)),
+        )
+    ],
+    "junit": [
+        Corpus(
+            [built("junit", "descendants")],
+            [ONE],
+            report=lambda classes, _args: reports.junit(classes),
+        ),
+        # Each virtual machine takes a second.
+        Corpus(
+            [built("junit", "descendants")],
+            [f'{SEPARATE} cases="*.fails() *.reads*()"'],
+            report=lambda classes, _args: reports.junit(classes, "fails()", "Prints()"),
+        ),
+    ],
+    "rostest": [
+        Corpus(
+            [str(HERE.parent / "rostest/arm_tests/descendants.test")],
+            [ONE],
+            report=lambda launch, _args: reports.rostest(launch),
+            fixture=MASTER,
+        )
+    ],
     "cargo": [
         Corpus(
             [str(HERE.parent / "cargo/descendants")],
@@ -237,7 +273,9 @@ def run(
         for program, mode in corpus.tests()
     ]
     suite = directory / "suite.xml"
-    suite.write_text("\n".join(['<suite name="descendants">', corpus.fixture, *lines, "</suite>\n"]))
+    suite.write_text(
+        "\n".join(['<suite name="descendants">', corpus.fixture, *lines, "</suite>\n"])
+    )
     ours = Run(rtf, str(suite), directory / "results", *options)
     ours.wait()
     return observe(ours.events())

@@ -9,7 +9,8 @@
 
 #include "descendants.hpp"
 
-struct Case {
+struct Case
+{
     const char *name;
     bool (*deed)();
 };

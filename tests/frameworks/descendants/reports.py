@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import tempfile
-import xml.etree.ElementTree as ElementTree
 from collections import Counter
+from functools import cache
 from pathlib import Path
+from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parents[3]
 SECONDS = 120
@@ -17,6 +19,9 @@ Verdicts = dict[str, str]
 """By case. What is outside of the cases has the name `OUTSIDE`."""
 
 OUTSIDE = ""
+
+RESULTS = {"OK": "passed", "FAIL": "failed", "ERROR": "failed"}
+"""In the words of AUnit."""
 
 TAP_PARSER = r"""
 my $tap = TAP::Parser->new({exec => \@ARGV});
@@ -62,6 +67,13 @@ def pytest(command: list[str], cases: list[str]) -> Verdicts:
         return junit_file(file, "{classname}.py::{name}")
 
 
+def aunit(program: str) -> Verdicts:
+    """The tests of a program, whose own list is its last one."""
+    output = run([program]).stdout
+    lines = re.findall("^(OK|FAIL|ERROR) (Descendants) : (.*)$", output, re.MULTILINE)
+    return {f"{case}: {name}": RESULTS[result] for result, case, name in lines}
+
+
 def go(package: str) -> Verdicts:
     """The tests of a package."""
     verdicts: Verdicts = {}
@@ -70,6 +82,32 @@ def go(package: str) -> Verdicts:
         if event["Action"] in ("pass", "fail") and "Test" in event:
             add(verdicts, event["Test"], event["Action"] == "fail")
     return verdicts
+
+
+def junit(classes: str, *ends: str) -> Verdicts:
+    """The tests of a directory of classes, or those whose names end so."""
+    verdicts = all_of_junit(classes)
+    return {name: it for name, it in verdicts.items() if not ends or name.endswith(ends)}
+
+
+@cache
+def all_of_junit(classes: str) -> Verdicts:
+    """The tests of a directory of classes."""
+    with tempfile.TemporaryDirectory() as directory:
+        launcher = ["java", "-jar", os.environ["RTF_JUNIT"], "execute", "--scan-class-path"]
+        run([*launcher, f"--class-path={classes}", f"--reports-dir={directory}"])
+        file = Path(directory) / "TEST-junit-jupiter.xml"
+        return junit_file(file, "{classname}.{name}")
+
+
+def rostest(launch: str) -> Verdicts:
+    """The tests of a node, which rostest runs on a master of its own."""
+    with tempfile.TemporaryDirectory() as home:
+        run(["rostest", launch], ROS_HOME=home, ROS_LOG_DIR=f"{home}/log", ROS_IP="127.0.0.1")
+        node = Path(launch).stem
+        file = Path(home) / f"test_results/{Path(launch).parent.name}/rosunit-{node}.xml"
+        verdicts = junit_file(file, node + ".{classname}.{name}")
+        return {name.replace(".__main__.", "."): verdict for name, verdict in verdicts.items()}
 
 
 def junit_file(file: Path, name: str) -> Verdicts:

@@ -26,7 +26,10 @@ if [ ! "$out/corpus.jar" -nt "$source/build.sh" ] || [ -n "$(find "$source/examp
   quietly jar --create --file "$out/corpus.jar" --manifest "$out/manifest" -C "$out/classes" .
   quietly jar --create --file "$out/empty.jar" -C "$out/empty" .
 fi
-if [ "$source/promises/PromisesTest.java" -nt "$out/promises/promises/PromisesTest.class" ]; then
-  quietly javac -d "$out/promises" -cp "$launcher" "$source/promises/PromisesTest.java"
-fi
+for package in promises descendants; do
+  class=${package^}Test
+  if [ "$source/$package/$class.java" -nt "$out/$package/$package/$class.class" ]; then
+    quietly javac -d "$out/$package" -cp "$launcher" "$source/$package/$class.java"
+  fi
+done
 setting RTF_JUNIT "$launcher"
