@@ -29,4 +29,5 @@ def report(session: Session, problem: BaseException) -> None:
     trace = _location.without_host(problem.__traceback__)
     lines = traceback.format_exception(type(problem), problem, trace)
     text = f"{reason}\n{''.join(lines).rstrip()}" if trace else reason
-    session.error(text, location=place)
+    # The plug-in's own classes go by their names, as those of a program.
+    session.error(text.replace("__mp_main__.", ""), location=place)

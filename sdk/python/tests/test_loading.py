@@ -86,12 +86,13 @@ def test_the_second_plugin_of_a_host_is_not_the_first(tmp_path: Path) -> None:
 
 def test_a_shared_host_forgets_the_plugins_that_it_has_run(tmp_path: Path) -> None:
     host = Host(tmp_path)
-    body = arm("import sys; self.report([n for n in sys.modules if n.startswith('rtf_plugin')])")
-    params = {**plugin(tmp_path, body), "is_last": False, "end_marker": "\0mark\n"}
-    for _ in range(3):
+    body = arm("import __main__\nself.report(vars(__main__).setdefault('number', number))")
+    for number in range(3):
+        named = plugin(tmp_path, f"number = {number}\n" + body)
+        params = {**named, "is_last": False, "end_marker": "\0mark\n"}
         answer = host.ask("run-test", params)
         assert answer["result"] == {"outcome": "passed", "continues": True}
-    assert host.texts() == [("report", "['rtf_plugin_plugin']")] * 3
+    assert host.texts() == [("report", str(number)) for number in range(3)]
     host.channel.close()
 
 

@@ -29,6 +29,7 @@ class ForkExit:
     def __init__(self, socket: object) -> None:
         """Record the state that all forks share; `socket` is the server's."""
         self._modules = frozenset(sys.modules)
+        self._main = sys.modules["__main__"]
         self._streams = (sys.stdout, sys.stderr)
         self._code_size = _code_size()
         self._is_plain = not has_foreign_code() and not _has_finalizers({id(socket)})
@@ -64,6 +65,7 @@ class ForkExit:
 
     def _finalize_modules(self) -> None:
         """Finalize the new modules, in the interpreter's order."""
+        sys.modules["__main__"] = self._main
         new = [name for name in sys.modules if name not in self._modules]
         modules = [weakref.ref(sys.modules.pop(name)) for name in new]
         gc.collect()

@@ -22,7 +22,7 @@ class LoadError(Exception):
 
 
 def load(file: str, base: type[_P]) -> _P:
-    """Run the file as a separate module and create an object of its one class."""
+    """Run the file as the program and create an object of its one class."""
     module = _run_file(file)
     found = _classes(module, base)
     if len(found) == 1:
@@ -47,15 +47,13 @@ def _run_file(file: str) -> ModuleType:
     with open(file, "rb", buffering=0) as stream:
         source = stream.read()
     code = _compiled(source, file)
-    stem = os.path.splitext(os.path.basename(file))[0]
-    name = f"rtf_plugin_{stem}"
-    while name in sys.modules:
-        name += "_"
-    module = type(sys)(name)
+    module = type(sys)(MODULE)
     module.__file__ = file
     predecessor.add_module(module, source)
-    sys.modules[name] = module
-    _loaded.append(name)
+    forget()
+    _host.append(sys.modules["__main__"])
+    for name in ("__main__", MODULE):
+        sys.modules[name] = module
     directory = os.path.dirname(os.path.abspath(file))
     if sys.path[:1] != [directory]:
         sys.path.insert(0, directory)
@@ -63,14 +61,19 @@ def _run_file(file: str) -> ModuleType:
     return module
 
 
-# The names of the loaded modules: `sys.modules` has many more.
-_loaded: list[str] = []
+# The name that `multiprocessing` gives the program in a process that runs its file again. The
+# file is the program here, too, so that such a process finds its functions and classes.
+MODULE = "__mp_main__"
+
+# The host's own module, while a plug-in is the program.
+_host: list[ModuleType] = []
 
 
 def forget() -> None:
-    """Forget all loaded files: the next one may have the same name."""
-    while _loaded:
-        sys.modules.pop(_loaded.pop(), None)
+    """Forget the loaded file: the next one may have the same name."""
+    while _host:
+        sys.modules["__main__"] = _host.pop()
+        sys.modules.pop(MODULE, None)
 
 
 # The last loaded file: a shared host often loads it again.
