@@ -22,7 +22,7 @@ use rtf_model::protocol::{FORK_SERVER_VARIABLE, OWNER_VARIABLE, SCOPE_VARIABLE};
 
 use crate::unix;
 pub use members::{SignalReach, Tree};
-pub use sweep::{Effort, await_ending, orphans, sweep_if};
+pub use sweep::{Effort, await_ending, await_ending_in_scope, orphans, sweep_if};
 
 const SIGKILL: i32 = 9;
 const SIGTERM: i32 = 15;

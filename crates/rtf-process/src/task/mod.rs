@@ -240,6 +240,7 @@ impl ProcessTask {
         // Hosts of tests are only in a group if each leak counts.
         let is_strict = self.job.is_grouped && self.role() == Some(ProcessRole::Test);
         let effort = if is_strict { Effort::Thorough } else { Effort::Once };
+        self.await_helpers().await;
         let found = self.job.launch.sweep(effort).await;
         let mut left = self.stop.leaked(found);
         self.drain(buffers, DRAIN_LIMIT).await;

@@ -111,6 +111,13 @@ impl ProcessTask {
         Vec::new()
     }
 
+    /// The process has ended by itself: waits for the helpers of its libraries, which end after it.
+    pub(super) async fn await_helpers(&self) {
+        if !self.throttle.is_stopping && self.stop.killed.is_none() {
+            tree::await_ending_in_scope(&self.job.launch.scope).await;
+        }
+    }
+
     /// The processes of its control group, if it has one.
     fn group_members(&self) -> Vec<i32> {
         self.job.launch.cgroup.as_ref().map(|group| group.members()).unwrap_or_default()

@@ -8,8 +8,8 @@ use rtf_model::LeakedProcess;
 
 use super::{
     OWN_TASKS, POLL_INTERVAL, SIGCONT, SIGKILL, STARTS, children_of, descendants, describe,
-    has_known_environ, is_exiting, is_fork_server, is_own_child, is_stopped, is_zombie, state_of,
-    unix,
+    has_known_environ, is_exiting, is_fork_server, is_own_child, is_stopped, is_zombie, scope_of,
+    state_of, unix,
 };
 
 const SIGSTOP: i32 = 19;
@@ -53,25 +53,50 @@ pub fn orphans() -> impl Iterator<Item = i32> {
 /// Waits for the orphans that belong to something and are about to end: the helpers of a library
 /// notice the end of their program. Others sleep.
 pub fn await_ending(belongs: impl Fn(i32) -> bool) {
-    let start = Instant::now();
-    let mut last_activity = start;
-    loop {
+    let mut wait = EndingWait::default();
+    while wait.goes_on(&belongs) {
+        std::thread::sleep(POLL_INTERVAL);
+    }
+}
+
+/// As [`await_ending`], for the orphans of a scope, in a task.
+pub async fn await_ending_in_scope(scope: &str) {
+    let mut wait = EndingWait::default();
+    let belongs = |pid| scope_of(pid).is_some_and(|found| found == scope.as_bytes());
+    while wait.goes_on(&belongs) {
+        tokio::time::sleep(POLL_INTERVAL).await;
+    }
+}
+
+/// A wait for orphans that are about to end.
+struct EndingWait {
+    start: Instant,
+    last_activity: Instant,
+}
+
+impl Default for EndingWait {
+    fn default() -> Self {
+        let now = Instant::now();
+        Self { start: now, last_activity: now }
+    }
+}
+
+impl EndingWait {
+    /// Whether some are left that may end soon. Reaps those that have ended.
+    fn goes_on(&mut self, belongs: &impl Fn(i32) -> bool) -> bool {
         let mut left = orphans().filter(|pid| belongs(*pid)).peekable();
         if left.peek().is_none() {
-            return;
+            return false;
         }
         let now = Instant::now();
         for pid in left {
             match state_of(pid) {
                 Some('Z') => unix::reap(pid),
                 Some('S' | 'I' | 'T' | 't') => {}
-                _ => last_activity = now,
+                _ => self.last_activity = now,
             }
         }
-        if now - last_activity >= IDLE_LIMIT || now - start >= ENDING_LIMIT {
-            return;
-        }
-        std::thread::sleep(POLL_INTERVAL);
+        now - self.last_activity < IDLE_LIMIT && now - self.start < ENDING_LIMIT
     }
 }
 

@@ -68,6 +68,7 @@ mod output_before_crash;
 mod parallel_suites;
 mod parallel_tests;
 mod pictures;
+mod plugin_children;
 mod predecessor_defects;
 mod predecessor_scripts;
 mod process_fixture;
