@@ -59,6 +59,15 @@ impl Launch {
         Ok(process)
     }
 
+    /// Waits for the leftover processes of an ended process that are about to end.
+    pub async fn await_helpers(&self) {
+        match &self.cgroup {
+            // A process that is ending has no environment any more.
+            Some(group) => tree::await_ending_of(|| group.members()).await,
+            None => tree::await_ending_of(|| tree::orphans_of(&self.scope)).await,
+        }
+    }
+
     /// Kills the leftover processes of an ended process, and returns them.
     pub async fn sweep(&mut self, effort: Effort) -> Vec<LeakedProcess> {
         let mut left = Vec::new();

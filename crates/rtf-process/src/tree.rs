@@ -22,7 +22,7 @@ use rtf_model::protocol::{FORK_SERVER_VARIABLE, OWNER_VARIABLE, SCOPE_VARIABLE};
 
 use crate::unix;
 pub use members::{SignalReach, Tree};
-pub use sweep::{Effort, await_ending, await_ending_in_scope, orphans, sweep_if};
+pub use sweep::{Effort, await_ending, await_ending_of, orphans, orphans_of, sweep_if};
 
 const SIGKILL: i32 = 9;
 const SIGTERM: i32 = 15;
@@ -210,10 +210,7 @@ fn is_fork_server(pid: i32) -> bool {
 
 /// Returns a process, the adopted orphans of its scope, and everything below them.
 pub fn members(root: i32, scope: &str) -> Vec<i32> {
-    let belongs = |pid: &i32| scope_of(*pid).is_some_and(|found| found == scope.as_bytes());
-    let orphans =
-        children_of(OWN_TASKS).into_iter().filter(|pid| !is_own_child(*pid)).filter(belongs);
-    let roots = std::iter::once(root).chain(orphans);
+    let roots = std::iter::once(root).chain(orphans_of(scope));
     roots.flat_map(with_descendants).collect()
 }
 

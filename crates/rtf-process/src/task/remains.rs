@@ -111,10 +111,11 @@ impl ProcessTask {
         Vec::new()
     }
 
-    /// The process has ended by itself: waits for the helpers of its libraries, which end after it.
+    /// After a process has ended by itself, waits for the helpers of its libraries, which end after
+    /// it.
     pub(super) async fn await_helpers(&self) {
         if !self.throttle.is_stopping && self.stop.killed.is_none() {
-            tree::await_ending_in_scope(&self.job.launch.scope).await;
+            self.job.launch.await_helpers().await;
         }
     }
 

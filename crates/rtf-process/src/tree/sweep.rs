@@ -54,21 +54,26 @@ pub fn orphans() -> impl Iterator<Item = i32> {
 /// notice the end of their program. Others sleep.
 pub fn await_ending(belongs: impl Fn(i32) -> bool) {
     let mut wait = EndingWait::default();
-    while wait.goes_on(&belongs) {
+    while wait.goes_on(orphans().filter(|pid| belongs(*pid))) {
         std::thread::sleep(POLL_INTERVAL);
     }
 }
 
-/// As [`await_ending`], for the orphans of a scope, in a task.
-pub async fn await_ending_in_scope(scope: &str) {
+/// The same for the remaining processes that `left` finds, in a task.
+pub async fn await_ending_of(left: impl Fn() -> Vec<i32>) {
     let mut wait = EndingWait::default();
-    let belongs = |pid| scope_of(pid).is_some_and(|found| found == scope.as_bytes());
-    while wait.goes_on(&belongs) {
+    while wait.goes_on(left().into_iter()) {
         tokio::time::sleep(POLL_INTERVAL).await;
     }
 }
 
-/// A wait for orphans that are about to end.
+/// The orphans of a scope.
+pub fn orphans_of(scope: &str) -> Vec<i32> {
+    let belongs = |pid: &i32| scope_of(*pid).is_some_and(|found| found == scope.as_bytes());
+    orphans().filter(belongs).collect()
+}
+
+/// A wait for processes that are about to end.
 struct EndingWait {
     start: Instant,
     last_activity: Instant,
@@ -83,8 +88,8 @@ impl Default for EndingWait {
 
 impl EndingWait {
     /// Whether some are left that may end soon. Reaps those that have ended.
-    fn goes_on(&mut self, belongs: &impl Fn(i32) -> bool) -> bool {
-        let mut left = orphans().filter(|pid| belongs(*pid)).peekable();
+    fn goes_on(&mut self, left: impl Iterator<Item = i32>) -> bool {
+        let mut left = left.peekable();
         if left.peek().is_none() {
             return false;
         }
