@@ -9,8 +9,8 @@ fn folder(learn: &str) -> Folder {
     folder.file(".git/HEAD", "ref: refs/heads/main\n");
     folder.file(".git/refs/heads/main", "0123456789abcdef0123456789abcdef01234567\n");
     folder.file(".git/refs/heads/arm", "1123456789abcdef0123456789abcdef01234567\n");
-    folder
-        .file("arm.xml", &format!("<suite name='arm'>\n  <test>M.lua {learn}</test>\n</suite>\n"));
+    let test = format!("  <test>M.lua {learn}</test>\n");
+    folder.file("arm.xml", &format!("<suite name='arm' middleware='shared'>\n{test}</suite>\n"));
     folder
 }
 
