@@ -101,7 +101,9 @@ fn the_remains_of_a_fixture_that_ends_by_itself_are_leaked_and_asked_to_stop() {
     world.exit(TEST, ExitStatus::Code(0));
     world.exit(FIXTURE, ExitStatus::Code(1));
     world.finish();
-    assert_snapshot!(world.transcript(), @"
+    // The order in an object depends on the crates that are built with this one.
+    let transcript = world.transcript().replace("pid:7,command:arm", "command:arm,pid:7");
+    assert_snapshot!(transcript, @"
     0.0  processes-leaked processes=[{command:arm,pid:7}] source={fixture:0}
     0.0  fixture-collapsed fixture=0 reason=its process ended with exit code 1
     0.0  test-stopping cause=collapse reason=fixture `fixture0` collapsed: its process ended with exit code 1 test=0

@@ -52,7 +52,7 @@ fn a_prompt_makes_a_fixture_ready_once_nothing_follows() {
     print(&mut world, "\n");
     world.answer(TEST, "passed");
     world.exit(TEST, ExitStatus::Code(0));
-    world.pass_examination(0);
+    world.input(FIXTURE, ProcessEvent::Alive);
     world.exit(FIXTURE, ExitStatus::Code(0));
     world.finish();
 }
