@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use super::hook_process::StreamEnds;
 use super::unix::GuardSignals;
 
-/// The time between looks at the processes.
+/// The interval between checks of the processes.
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
 /// The number of requests to end the run after which nothing is torn down.
 const KILL_REQUESTS: u32 = 2;

@@ -17,7 +17,7 @@ use crate::hook::{HOOK_KILLED, HookJudgement, RUN_REQUEST};
 
 /// The time between SIGTERM and the kill.
 const TERM_GRACE: Duration = Duration::from_secs(1);
-/// The time between looks at the processes that a stopped hook has left.
+/// The interval between checks of the processes that a stopped hook has left.
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
 /// The limit for reading the outputs of an ended process.
 const DRAIN_LIMIT: Duration = Duration::from_millis(500);

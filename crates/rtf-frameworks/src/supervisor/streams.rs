@@ -41,7 +41,7 @@ impl Read for Source {
 }
 
 /// The socket to which a program connects. Only its first connection is the report: processes
-/// that execute the program again connect, too, and end if nobody listens.
+/// that execute the program again connect, too, and end if the connection is refused.
 pub(super) struct ReportSocket {
     listener: TcpListener,
     /// The first connection, also after its end.
@@ -75,7 +75,7 @@ impl ReportSocket {
         }
     }
 
-    /// Reads what other processes send: they would wait if nobody did.
+    /// Reads what other processes send: they would block otherwise.
     fn discard_others(&mut self, piece: &mut [u8]) {
         self.others.retain_mut(|stream| {
             loop {
