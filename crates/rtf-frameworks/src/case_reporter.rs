@@ -1,6 +1,7 @@
 //! Reports the cases of a test to the runner: numbers them, keeps the open ones, and
 //! compares them with the selected ones.
 
+mod process;
 mod reports;
 
 use std::collections::hash_map::Entry;
@@ -9,9 +10,9 @@ use std::time::Instant;
 
 use rtf_host::Session;
 use rtf_model::protocol::{CaseSelector, Notification};
-use rtf_model::{CaseId, CaseStart, LeakedProcess, MessageKind, Outcome};
+use rtf_model::{CaseId, CaseStart, MessageKind, Outcome};
 
-use crate::case::{CaseResult, Retry, Selection, StartedCase};
+use crate::case::{CaseResult, Retry, StartedCase};
 use crate::wanted::WantedCases;
 
 /// How many names a message lists.
@@ -284,23 +285,6 @@ impl<'a> CaseReporter<'a> {
         }
     }
 
-    /// The present process left these processes behind, which were killed.
-    pub fn leave(&mut self, processes: Vec<LeakedProcess>) {
-        if processes.is_empty() {
-            return;
-        }
-        let held = self.held_end.as_ref().map(|(case, _)| *case);
-        let running = || self.open.iter().find(|open| open.parent.is_none()).map(|open| open.case);
-        let case = self.has_only_case.then(|| held.or_else(running)).flatten();
-        self.session.forward(&Notification::ProcessesLeft { case, processes });
-    }
-
-    /// The result of the present process is complete.
-    pub fn end_process(&mut self) {
-        self.has_only_case = false;
-        self.report_end();
-    }
-
     /// Starts and finishes a top-level case that does not run.
     pub fn add(&mut self, case: StartedCase, result: CaseResult) {
         let path = case.name.clone();
@@ -335,41 +319,6 @@ impl<'a> CaseReporter<'a> {
         &self.results
     }
 
-    /// The present process has reported everything.
-    pub fn complete_report(&mut self) {
-        self.is_complete = true;
-    }
-
-    /// Whether the present process has reported everything.
-    #[must_use]
-    pub fn is_complete(&self) -> bool {
-        self.is_complete
-    }
-
-    /// Whether the present process reported a problem.
-    #[must_use]
-    pub fn has_problem(&self) -> bool {
-        self.has_problem || self.open.iter().any(|open| open.has_problem)
-    }
-
-    /// How many top-level cases finished in the present process.
-    #[must_use]
-    pub fn finished(&self) -> usize {
-        self.finished
-    }
-
-    /// Whether the present process reported neither a case nor a problem.
-    #[must_use]
-    pub fn has_no_result(&self) -> bool {
-        self.finished == 0 && !self.has_problem() && !self.is_skipped
-    }
-
-    /// The top-level case that finished last.
-    #[must_use]
-    pub fn last_finished(&self) -> Option<&str> {
-        self.last_finished.as_deref()
-    }
-
     /// How many cases there are, if all of them were skipped.
     #[must_use]
     pub fn all_skipped(&self) -> Option<usize> {
@@ -394,17 +343,6 @@ impl<'a> CaseReporter<'a> {
         let dots = if missing.len() > NAMES_SHOWN { ", …" } else { "" };
         let (some, all) = (missing.len(), expected.len());
         Some(format!("{some} of {all} selected cases were not run: {}{dots}", names.join(", ")))
-    }
-
-    /// A new process begins, which runs these cases.
-    pub fn begin_process(&mut self, selection: &Selection<'_>) {
-        (self.has_problem, self.finished, self.last_finished) = (false, 0, None);
-        self.finished_here.clear();
-        self.is_complete = false;
-        self.has_only_case = selection.cases.len() == 1;
-        self.is_first_process = self.expected.is_none();
-        let names = || selection.cases.iter().map(|case| case.name.clone()).collect();
-        self.selection = (!selection.is_all).then(names);
     }
 
     /// Finishes all open cases: with this result if no open case is in it, otherwise with the

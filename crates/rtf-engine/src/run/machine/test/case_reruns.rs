@@ -1,6 +1,10 @@
-//! Cases that their framework runs again: the last attempt of each one decides.
+//! Cases that their framework runs again: the last attempt of each one decides. Names of cases, which
+//! are unique apart from attempts.
 
-use rtf_model::CaseStart;
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use rtf_model::{CaseId, CaseStart};
 
 use crate::run::machine::judge::TestProblem;
 
@@ -60,4 +64,17 @@ pub(super) struct CaseName {
     /// Its name in the record.
     pub name: String,
     pub attempt: u32,
+}
+
+/// Makes a name unique: the second one becomes `NAME#2`.
+pub(super) fn unique(
+    counts: &mut HashMap<u64, u32>,
+    parent: Option<CaseId>,
+    name: String,
+) -> (String, bool) {
+    let mut hasher = DefaultHasher::new();
+    (parent, &name).hash(&mut hasher);
+    let count = counts.entry(hasher.finish()).or_default();
+    *count += 1;
+    if *count == 1 { (name, false) } else { (format!("{name}#{count}"), true) }
 }

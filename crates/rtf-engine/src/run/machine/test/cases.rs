@@ -1,18 +1,17 @@
 //! The cases of a test: judges each one, and finishes those that the test leaves open.
 
 use std::collections::HashMap;
-use std::hash::{DefaultHasher, Hash, Hasher};
 
 use rtf_model::{
-    CaseFinished, CaseId, CaseStart, CaseStarted, Diagnostic, EventKind, LeakedProcess, Message,
-    MessageKind, Outcome, Phase, PlannedCases, Verdict,
+    CaseFinished, CaseId, CaseStart, CaseStarted, Diagnostic, EventKind, Outcome, Phase,
+    PlannedCases, Verdict,
 };
 
 use super::TestRun;
 use super::carried_cases::{CarriedCases, CaseHistory};
-use super::case_reruns::{CaseName, CaseReruns};
-use crate::run::machine::context::{Context, error_message};
-use crate::run::machine::judge::{Judgement, TestProblem, describe_leak, judge, leak_problem};
+use super::case_reruns::{CaseName, CaseReruns, unique};
+use crate::run::machine::context::Context;
+use crate::run::machine::judge::{Judgement, TestProblem, judge};
 use rtf_plan::plan::{AfterCollapse, TestPlan};
 
 /// The number of names that a problem lists.
@@ -82,6 +81,16 @@ enum CaseResult {
 }
 
 impl OpenCase {
+    fn new(id: CaseId, parent: Option<CaseId>, name: CaseName, path: String) -> Self {
+        let (first_problem, inner_problem, leak) = (None, None, None);
+        Self { id, parent, name, path, first_problem, inner_problem, leak }
+    }
+
+    /// Records the problem of processes that it left behind, which counts if it passes otherwise.
+    pub fn record_leak(&mut self, problem: Option<String>) {
+        self.leak = problem;
+    }
+
     /// Records the first problem that is reported in the case.
     pub fn record(&mut self, problem: TestProblem) {
         self.first_problem.get_or_insert(problem);
@@ -184,15 +193,6 @@ fn open_inside(innermost: &mut HashMap<CaseId, CaseId>, open: &OpenCase) -> Opti
     inside
 }
 
-/// Makes a name unique: the second one becomes `NAME#2`.
-fn unique(counts: &mut HashMap<u64, u32>, parent: Option<CaseId>, name: String) -> (String, bool) {
-    let mut hasher = DefaultHasher::new();
-    (parent, &name).hash(&mut hasher);
-    let count = counts.entry(hasher.finish()).or_default();
-    *count += 1;
-    if *count == 1 { (name, false) } else { (format!("{name}#{count}"), true) }
-}
-
 impl TestRun<'_> {
     pub(super) fn plan_cases(&mut self, names: Vec<String>, cx: &mut Context<'_>) {
         if self.evidence.answer.is_some() {
@@ -246,9 +246,8 @@ impl TestRun<'_> {
                 diagnostic: Diagnostic::warning("repeated-case", message),
             });
         }
-        let (id, parent) = (start.case, start.parent);
-        let (first_problem, inner_problem, leak) = (None, None, None);
-        cases.open.push(OpenCase { id, parent, name, path, first_problem, inner_problem, leak });
+        let parent = start.parent;
+        cases.open.push(OpenCase::new(start.case, parent, name, path));
         let started = CaseStarted { test: self.plan.id, start };
         if let Some(history) = &mut cases.history {
             history.start(&started.start, cx.now());
@@ -282,27 +281,6 @@ impl TestRun<'_> {
             false => CaseResult::Case(verdict, reason),
         };
         self.end_case(number, result, duration_us, cx);
-    }
-
-    /// The host killed what a program left behind, which is a problem of the case only if the
-    /// program ran no other one.
-    pub(super) fn on_processes_left(
-        &mut self,
-        case: Option<CaseId>,
-        processes: Vec<LeakedProcess>,
-        cx: &mut Context<'_>,
-    ) {
-        let policy = self.plan.settings.leaks;
-        let case = self.cases.open(case);
-        match case.and_then(|case| self.cases.get_mut(case)) {
-            Some(open) => open.leak = leak_problem(policy, &processes),
-            None => self.left.extend_from_slice(&processes),
-        }
-        if let (Some(_), Some(text)) = (case, describe_leak(&processes)) {
-            let message = Message { case, kind: MessageKind::Report, ..error_message(text) };
-            cx.emit(EventKind::Message { source: self.source(), message, test: None });
-        }
-        cx.report_leaked(self.source(), processes);
     }
 
     /// Adds the finished cases of an earlier attempt.
@@ -353,17 +331,7 @@ impl TestRun<'_> {
             }
             let path = started.start.name.clone();
             cx.emit(EventKind::CaseStarted(Box::new(started)));
-            let (first_problem, inner_problem) = (None, None);
-            let (id, parent, name) = (case, None, due.next());
-            self.cases.open.push(OpenCase {
-                id,
-                parent,
-                name,
-                path,
-                first_problem,
-                inner_problem,
-                leak: None,
-            });
+            self.cases.open.push(OpenCase::new(case, None, due.next(), path));
             let result = match ended {
                 Some((verdict, reason)) => {
                     let (verdict, reason, innermost) = (*verdict, reason.clone(), None);

@@ -3,13 +3,16 @@
 
 use std::time::Duration;
 
-use rtf_model::{EventKind, ExitStatus, Finding, LeakedProcess, StopCause, TestFinished, Verdict};
+use rtf_model::{
+    CaseId, EventKind, ExitStatus, Finding, LeakedProcess, Message, MessageKind, StopCause,
+    TestFinished, Verdict,
+};
 
 use super::questions::ENDED;
 use super::{CarriedCases, TestRun};
-use crate::run::machine::context::Context;
+use crate::run::machine::context::{Context, error_message};
 use crate::run::machine::io::TestTimer;
-use crate::run::machine::judge::{Judgement, judge, leak_problem};
+use crate::run::machine::judge::{Judgement, describe_leak, judge, leak_problem};
 use crate::run::machine::kill_escalation::killed_text;
 
 /// How long a test that did not pass waits for a fixture's collapse: a connection breaks
@@ -79,6 +82,27 @@ impl TestRun<'_> {
                 cx.report_leaked(self.source(), left);
             }
         }
+    }
+
+    /// The host killed processes that a program left behind. This is a problem of the case only if the
+    /// program ran no other one.
+    pub(super) fn on_processes_left(
+        &mut self,
+        case: Option<CaseId>,
+        processes: Vec<LeakedProcess>,
+        cx: &mut Context<'_>,
+    ) {
+        let policy = self.plan.settings.leaks;
+        let case = self.cases.open(case);
+        match case.and_then(|case| self.cases.get_mut(case)) {
+            Some(open) => open.record_leak(leak_problem(policy, &processes)),
+            None => self.left.extend_from_slice(&processes),
+        }
+        if let (Some(_), Some(text)) = (case, describe_leak(&processes)) {
+            let message = Message { case, kind: MessageKind::Report, ..error_message(text) };
+            cx.emit(EventKind::Message { source: self.source(), message, test: None });
+        }
+        cx.report_leaked(self.source(), processes);
     }
 
     /// A fixture found a problem, before the verdict.
