@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use insta::assert_snapshot;
-use rtf_model::{ExitStatus, LeakedProcess, Phase, Trigger};
+use rtf_model::{ExitStatus, LeakedProcess, Phase, Stream, Trigger};
 
 use super::world::{FIXTURE, HOOK, SECOND, TEST, World, hook, suite};
 use crate::run::machine::ProcessEvent;
@@ -88,6 +88,30 @@ fn processes_that_remain_are_asked_and_then_killed() {
     4.0  fixture-stopped fixture=0 problem=it did not stop within 4s and was killed; `arm` still ran and was killed
     4.0  suite-finished
     ");
+}
+
+#[test]
+fn the_reason_of_a_process_that_leaves_others_has_the_line_that_says_why() {
+    let plan = process();
+    for is_ready in [false, true] {
+        let mut world = World::started(&plan);
+        if is_ready {
+            world.input(FIXTURE, ProcessEvent::ProbesPassed);
+            world.phase(TEST, Phase::Run);
+        }
+        let line = b"sim: joint.so: cannot open shared object file\n".to_vec();
+        world.input(FIXTURE, ProcessEvent::Printed(Stream::Stderr, line));
+        world.input(FIXTURE, leader_ended(ExitStatus::Code(127)));
+        if is_ready {
+            world.exit(TEST, ExitStatus::Code(0));
+        }
+        world.exit(FIXTURE, ExitStatus::Code(127));
+        world.finish();
+        let transcript = world.transcript();
+        let broken = transcript.lines().find(|line| line.contains("fixture-broken"));
+        let reason = broken.expect("a reason");
+        assert!(reason.contains("joint.so: cannot open shared object file"), "{reason}");
+    }
 }
 
 #[test]
