@@ -11,7 +11,7 @@ mod hook_queue;
 mod host_replies;
 mod io;
 mod judge;
-mod kill_escalation;
+pub(super) mod kill_escalation;
 mod line_buffer;
 mod output_capture;
 mod suite;

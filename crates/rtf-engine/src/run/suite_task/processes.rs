@@ -7,6 +7,7 @@ use tokio::sync::mpsc;
 use super::SuiteTask;
 use crate::guard::{FixtureStop, HookStart};
 use crate::run::context::{DebugMode, attachments_dir};
+use crate::run::machine::kill_escalation::SIGTERM;
 use crate::run::machine::{HostId, Program, StartRequest};
 use crate::run::probes;
 use crate::unbuffered;
@@ -17,9 +18,6 @@ use rtf_process::spawner::Spawner;
 use rtf_process::ssh::{self, RemoteCommand};
 use rtf_process::start_gate;
 use rtf_process::task::{AttachedJob, ProcessJob, run_process, watch_attached};
-
-/// What the processes of a plug-in get.
-const SIGTERM: i32 = 15;
 
 impl SuiteTask<'_> {
     pub(super) fn spawn(&mut self, host: HostId, source: Source, mut start: StartRequest) {
