@@ -56,7 +56,7 @@ expect 0 rtf doctor dll lua python ros2shm # ros2shm is a fixture
 expect 1 rtf run scripts.xml
 expect_in_output '3 passed, 1 failed'
 # Without python3 in PATH, the interpreter that runs the module runs the plug-ins.
-alone[2]=PATH=/nonexistent
+alone[2]=PATH=$work/no-such-directory
 expect 2 "$venv/bin/rtf" run scripts.xml
 # shellcheck disable=SC2016 # no expansion
 expect_in_output 'plug-ins of type `python` need'

@@ -36,9 +36,10 @@ mod tests {
 
     #[test]
     fn what_is_no_zone_is_ignored() {
-        let file = tempfile::NamedTempFile::new().unwrap();
-        std::fs::write(file.path(), "Europe/Berlin").unwrap();
-        assert_eq!(read_zone(file.path()), None);
-        assert_eq!(read_zone(Path::new("/nonexistent")), None);
+        let dir = tempfile::tempdir().unwrap();
+        let file = dir.path().join("zone");
+        std::fs::write(&file, "Europe/Berlin").unwrap();
+        assert_eq!(read_zone(&file), None);
+        assert_eq!(read_zone(&dir.path().join("missing")), None);
     }
 }
