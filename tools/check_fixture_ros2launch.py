@@ -179,7 +179,7 @@ def required(rtf: str, suite: str, directory: Path) -> None:
 def broken(rtf: str, suite: str, home: Path) -> None:
     """What cannot be started fails the set-up with the line that says why, which is shown once."""
     cause = "ValueError: could not convert string to float: 'fast'"
-    cases = {
+    cases: dict[str, tuple[str, ...]] = {
         "early": ("rate=fast", f"talker-1 ended with exit code 1: {cause}"),
         "missing": (
             "file=missing.launch.xml",
@@ -191,13 +191,18 @@ def broken(rtf: str, suite: str, home: Path) -> None:
             "Failed to load node 'driver' of type 'arm::Driver' in container '/box': Failed to "
             "find class with the requested plugin name.",
         ),
+        "once": (
+            "file=once.launch.xml",
+            "a message on /chatter for a new subscriber: not within 8 s",
+            "--set=options=--topic /chatter --timeout 8",
+        ),
         "unnamed": (
             "options=--process speaker --timeout 2",
             "the start of speaker: not within 2 s (started: talker-1, calibration-2)",
         ),
     }
-    for name, (setting, reason) in cases.items():
-        run = Run(rtf, suite, home / name, f"--set={setting}")
+    for name, (setting, reason, *more) in cases.items():
+        run = Run(rtf, suite, home / name, f"--set={setting}", *more)
         expect("exit code", run.wait(), 1)
         expect("reason", run.reason("fixture-broken"), f"set-up failed: {reason}")
         first = "[INFO] [launch]: Default logging verbosity"

@@ -44,6 +44,11 @@ for header in "${yarp_headers[@]}"; do
 done
 yarp_options+=("-DCMAKE_CXX_FLAGS=$yarp_flags")
 
+# The name server also joins the multicast group 224.2.1.1, on the interface of the default route. Here
+# it stays on the loopback interface.
+yarp_multicast=src/libYARP_os/src/yarp/os/impl/DgramTwoWayStream.cpp
+yarp_patch='s/dmcast->join(addr, 1)/dmcast->join(addr, 1, ACE_TEXT("lo"))/'
+
 yarp_download() {
   local tarball=$yarp_work/yarp_middleware-$yarp_version.tar.gz
   # pip also downloads the build tools, to read the name of the package.
@@ -57,6 +62,8 @@ yarp_download() {
     mkdir -p "$yarp_work/sources"
     tar -xf "$tarball" -C "$yarp_work/sources" --strip-components 1
     sed -i 's/DEFAULT ON/DEFAULT OFF/' "$yarp_work"/sources/src/{devices,carriers}/*/CMakeLists.txt
+    sed -i "$yarp_patch" "$yarp_work/sources/$yarp_multicast"
+    grep -q 'ACE_TEXT("lo")' "$yarp_work/sources/$yarp_multicast" || die "$yarp_multicast was not patched"
     touch "$yarp_work/sources/complete"
   fi
   # YARP's CMake modules, which its users need, too.
@@ -101,7 +108,7 @@ need_packages libace-dev libeigen3-dev libtinyxml-dev libedit-dev libsqlite3-dev
 
 yarp_key=$(
   {
-    printf '%s\n' "$yarp_sha256" "$ycm_version" "${yarp_options[@]}"
+    printf '%s\n' "$yarp_sha256" "$ycm_version" "$yarp_patch" "${yarp_options[@]}"
     c++ --version
     python3 -c 'import sys; print(sys.executable, sys.version)'
   } | sha256sum | cut -c1-12

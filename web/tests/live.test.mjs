@@ -48,7 +48,10 @@ test('a run is watched live', async (context) => {
         await first.rowIs('Grip', 'pending');
         await first.see('0 of 2', 'section.summary');
         await first.see('ready', 'article');
-        // The private resources of the suite, and how to join it.
+        // The private resources of the suite, and how to join it, are folded.
+        const resources = page.getByText('Private resources');
+        assert.ok(!(await page.getByText(/^ROS_DOMAIN_ID=/).isVisible()));
+        await resources.click();
         await first.see(/^ROS_DOMAIN_ID=\d+$/, 'article');
         await first.see(/^export .*ROS_DOMAIN_ID=/, 'article');
     });

@@ -236,7 +236,8 @@ pub fn find_by_scope(prefix: &str) -> Vec<LeakedProcess> {
     found
 }
 
-fn with_descendants(root: i32) -> impl Iterator<Item = i32> {
+/// Returns a process and everything below it, parents before children.
+pub fn with_descendants(root: i32) -> impl Iterator<Item = i32> {
     std::iter::once(root).chain(descendants(root))
 }
 

@@ -4,7 +4,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use rustix::process::{Pid, Signal, kill_process, kill_process_group};
+use rtf_process::tree;
+use rustix::process::{Pid, Signal, kill_process};
 
 use crate::framework::StackDump;
 
@@ -19,8 +20,11 @@ pub(super) fn dump(kind: StackDump, pid: Pid, file: &Path) -> Option<String> {
     match kind {
         StackDump::Debugger => Some(by_debugger(pid)),
         StackDump::SignalToOutput(signal) => {
-            // The program may run the cases in a child.
-            let _ = kill_process_group(pid, signal);
+            // The program may run the cases in a child. What a case has started must not end.
+            let processes = tree::with_descendants(pid.as_raw_nonzero().get());
+            for pid in processes.filter_map(Pid::from_raw).filter(|pid| catches(*pid, signal)) {
+                let _ = kill_process(pid, signal);
+            }
             std::thread::sleep(SIGNAL_WAIT / 4);
             None
         }
