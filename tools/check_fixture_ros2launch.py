@@ -193,7 +193,7 @@ def broken(rtf: str, suite: str, home: Path) -> None:
         ),
         "once": (
             "file=once.launch.xml",
-            "a message on /chatter for a new subscriber: not within 8 s",
+            "a message on /chatter for a new subscriber: not within 8 s (started: talker-1)",
             "--set=options=--topic /chatter --timeout 8",
         ),
         "unnamed": (
