@@ -10,7 +10,7 @@ use rtf_model::protocol::CaseSelector;
 
 use crate::case::{CaseResult, ListedCase, Repetition, Selection};
 use crate::case_reporter::CaseReporter;
-use crate::last_output::LastOutput;
+use crate::last_output::{LastOutput, OutputStream};
 
 /// A test of a suite: a program of a framework, or files and directories with its tests.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -101,15 +101,6 @@ pub enum StackDump {
     SignalToOutput(rustix::process::Signal),
     /// It writes them on SIGUSR2 to the file in `RTF_STACK_FILE`.
     SignalToFile,
-}
-
-/// Output of the program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OutputStream {
-    /// Standard output.
-    Stdout,
-    /// Standard error.
-    Stderr,
 }
 
 /// Part of a report that is not as the framework writes it.

@@ -4,7 +4,14 @@ use std::collections::VecDeque;
 
 use rtf_model::FailureLine;
 
-use crate::framework::OutputStream;
+/// Output of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OutputStream {
+    /// Standard output.
+    Stdout,
+    /// Standard error.
+    Stderr,
+}
 
 /// How many lines of each stream are kept.
 const LINES: usize = 50;

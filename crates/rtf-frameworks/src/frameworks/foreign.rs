@@ -10,7 +10,8 @@ use rtf_model::{ExitStatus, Outcome};
 use super::{boost, catch2, ctest, doctest, gtest, junit};
 use crate::case::{CaseResult, ListedCase, Selection};
 use crate::case_reporter::CaseReporter;
-use crate::framework::{Launch, OpenChannel, OutputStream, ReportReader, TestProgram};
+use crate::framework::{Launch, OpenChannel, ReportReader, TestProgram};
+use crate::last_output::OutputStream;
 use crate::report_dir;
 
 /// The types whose list of cases [`count_listed`] reads.

@@ -16,8 +16,9 @@ use rtf_model::{Comparison, ExitStatus, Location, Measurement, Message, MessageK
 use crate::case::{CaseResult, ListedCase, StartedCase};
 use crate::case_reporter::CaseReporter;
 use crate::framework::{
-    Framework, Garbage, Launch, ListError, OutputStream, ReportChannel, ReportReader, TestProgram,
+    Framework, Garbage, Launch, ListError, ReportChannel, ReportReader, TestProgram,
 };
+use crate::last_output::OutputStream;
 use diagnostics::Diagnostics;
 use line::Directive;
 use parser::{ReportedPoint, TapEvent, TapParser};

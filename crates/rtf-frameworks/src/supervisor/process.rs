@@ -21,8 +21,8 @@ use super::streams::{self, Source};
 use super::{TestRun, stack};
 use crate::case::Selection;
 use crate::case_reporter::CaseReporter;
-use crate::framework::{Garbage, Launch, OutputStream, ReportChannel, ReportReader};
-use crate::last_output::LastOutput;
+use crate::framework::{Garbage, Launch, ReportChannel, ReportReader};
+use crate::last_output::{LastOutput, OutputStream};
 use crate::{listing, report_dir};
 
 /// How much is read at once.

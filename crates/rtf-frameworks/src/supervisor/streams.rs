@@ -9,7 +9,8 @@ use std::path::Path;
 use rustix::io::FdFlags;
 use rustix::pipe::PipeFlags;
 
-use crate::framework::{Framework, Launch, OpenChannel, OutputStream, ReportChannel};
+use crate::framework::{Framework, Launch, OpenChannel, ReportChannel};
+use crate::last_output::OutputStream;
 use crate::report_dir;
 
 /// The first descriptor after the standard streams.

@@ -1,7 +1,50 @@
 //! The text of a script → the modules that it imports. Text in comments and strings may count,
 //! too; imports that are computed do not.
 
-use super::scripts::Language;
+use std::path::{Path, PathBuf};
+
+/// A language whose scripts name the modules that they import.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Language {
+    Python,
+    Lua,
+    Ruby,
+}
+
+impl Language {
+    /// The language of a script, by its name.
+    pub fn of(file: &Path) -> Option<Self> {
+        match file.extension()?.to_str()? {
+            "py" => Some(Self::Python),
+            "lua" => Some(Self::Lua),
+            "rb" => Some(Self::Ruby),
+            _ => None,
+        }
+    }
+
+    /// The files that a module may be.
+    pub fn files(self, module: &Path) -> Vec<PathBuf> {
+        let with = |end: &str| {
+            let mut file = module.as_os_str().to_owned();
+            file.push(end);
+            PathBuf::from(file)
+        };
+        match self {
+            Self::Python => vec![with(".py")],
+            Self::Lua => vec![with(".lua"), module.join("init.lua"), module.to_owned()],
+            Self::Ruby => vec![with(".rb"), module.to_owned()],
+        }
+    }
+
+    /// The variable with further directories.
+    pub fn variable(self) -> Option<&'static str> {
+        match self {
+            Self::Python => Some("PYTHONPATH"),
+            Self::Lua => None,
+            Self::Ruby => Some("RUBYLIB"),
+        }
+    }
+}
 
 /// A module that a script names.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -19,8 +19,9 @@ use std::path::{Path, PathBuf};
 use rtf_plan::plan::{FixtureBody, PluginPlan, SuitePlan, TestPlan};
 use siphasher::sip::SipHasher13;
 
+use imports::Language;
 use libraries::Libraries;
-use scripts::{Language, ModulePath};
+use scripts::ModulePath;
 
 /// A test with more files has no hash: reading them would delay the run.
 const MAX_FILES: usize = 2000;

@@ -6,54 +6,11 @@ use std::path::{Path, PathBuf};
 
 use rtf_plan::plan::SuitePlan;
 
-use super::imports::{self, Import};
+use super::imports::{self, Import, Language};
 use super::{MAX_FILES, is_installed};
 
 /// A script is read up to here.
 const MAX_BYTES: u64 = 4 * 1024 * 1024;
-
-/// A language whose scripts name the modules that they import.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Language {
-    Python,
-    Lua,
-    Ruby,
-}
-
-impl Language {
-    /// The language of a script, by its name.
-    pub fn of(file: &Path) -> Option<Self> {
-        match file.extension()?.to_str()? {
-            "py" => Some(Self::Python),
-            "lua" => Some(Self::Lua),
-            "rb" => Some(Self::Ruby),
-            _ => None,
-        }
-    }
-
-    /// The files that a module may be.
-    fn files(self, module: &Path) -> Vec<PathBuf> {
-        let with = |end: &str| {
-            let mut file = module.as_os_str().to_owned();
-            file.push(end);
-            PathBuf::from(file)
-        };
-        match self {
-            Self::Python => vec![with(".py")],
-            Self::Lua => vec![with(".lua"), module.join("init.lua"), module.to_owned()],
-            Self::Ruby => vec![with(".rb"), module.to_owned()],
-        }
-    }
-
-    /// The variable with further directories.
-    fn variable(self) -> Option<&'static str> {
-        match self {
-            Self::Python => Some("PYTHONPATH"),
-            Self::Lua => None,
-            Self::Ruby => Some("RUBYLIB"),
-        }
-    }
-}
 
 /// The directories in which modules are searched for.
 #[derive(Debug, Default)]

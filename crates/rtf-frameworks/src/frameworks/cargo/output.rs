@@ -7,7 +7,8 @@ use rtf_model::{ExitStatus, Location, MessageKind, Outcome};
 
 use crate::case::CaseResult;
 use crate::case_reporter::CaseReporter;
-use crate::framework::{Garbage, OutputStream, ReportReader};
+use crate::framework::{Garbage, ReportReader};
+use crate::last_output::OutputStream;
 use crate::utf8_pieces::Utf8Pieces;
 
 /// How the summary begins. A test can print that, too: the last one counts.

@@ -10,7 +10,8 @@ use super::measurements::{self, Printed};
 use super::properties::CTestCase;
 use crate::case::CaseResult;
 use crate::case_reporter::CaseReporter;
-use crate::framework::{Garbage, OutputStream, ReportReader};
+use crate::framework::{Garbage, ReportReader};
+use crate::last_output::OutputStream;
 
 /// Maximum size of an output that is searched.
 const OUTPUT_BYTES: usize = 64 << 20;

@@ -8,7 +8,8 @@ use rtf_model::{ExitStatus, Location, MessageKind, Outcome};
 use super::Report;
 use crate::case::{CaseResult, ListedCase, StartedCase};
 use crate::case_reporter::CaseReporter;
-use crate::framework::{Garbage, OutputStream, ReportReader};
+use crate::framework::{Garbage, ReportReader};
+use crate::last_output::OutputStream;
 use crate::utf8_pieces::Utf8Pieces;
 
 const SKIPPED: &str = "[  SKIPPED ] ";
