@@ -25,17 +25,18 @@ setting() {
   printf 'export %s=%q\n' "$1" "$2"
 }
 
-# Compiles each C++ program of the corpus that is older than its sources: NAME.cpp to NAME, and the
-# libraries that rtf loads into them. Arguments are for the compiler.
+# Compiles each C++ program of the corpus that is older than its sources or the SDK's headers:
+# NAME.cpp to NAME, and the libraries that rtf loads into them. Arguments are for the compiler.
 cpp_programs() {
-  local file program
+  local file program headers=sdk/cpp/include
   quietly tools/preload.sh
   install -m 755 tests/frameworks/descendants/twice_test.sh "$out/twice_test"
   for file in "$source"/*.cpp; do
     program=$out/$(basename "$file" .cpp)
     if [ "$file" -nt "$program" ] || [ "$source/build.sh" -nt "$program" ] ||
-      [ tests/frameworks/descendants/descendants.hpp -nt "$program" ]; then
-      quietly c++ -std=c++17 -g -O0 -Wall -o "$program" "$file" "$@"
+      [ tests/frameworks/descendants/descendants.hpp -nt "$program" ] ||
+      [ -n "$(find $headers/rtf -newer "$program")" ]; then
+      quietly c++ -std=c++17 -g -O0 -Wall -I$headers -o "$program" "$file" "$@"
     fi
   done
 }

@@ -4,14 +4,20 @@
     promises.py RTF TYPE
 
 `promises.json` is the table. Each program in it has three cases: `first` and `third` pass, and
-`second` runs the shell command in `PROMISE`. A promise has
+`second` runs the shell command in `PROMISE`. With the variable `MEASURES`, `third` also reports
+the measurement `force` = 2.5, with `MEASURES` as its upper limit if it can have one. A promise
+has
 
     does          the command
+    measures      the variable `MEASURES`, by default none
     attributes    of the test
     when          `interrupt` or `collapse`: what happens while the command runs; it has then
-                  written `$PROMISE_DIR/runs`
+                  written `$PROMISE_DIR/runs`; nothing outlives the run
     expected      `verdict`; `reason`: a part of it; `left`: how many processes were left behind,
-                  by default 0; `stdout`, `stderr`: a part of it;
+                  by default 0; `stdout`, `stderr`: a part of it; `file`: one that the command
+                  has written in `$PROMISE_DIR`;
+                  `measured`: the measurements of `third`, or of a test without cases, by default
+                  none; all others have none;
                   `cases`: those that did not pass, with `null` for one that is not reported, and
                   `any` for one that may be
     separate      replaces parts of it if each case has a process
@@ -30,6 +36,7 @@ and a type
 
 from __future__ import annotations
 
+import contextlib
 import json
 import signal
 import subprocess
@@ -96,6 +103,8 @@ class Promises:
         run.wait()
         events = list(run.events())
         results = observe(events)
+        processes = processes_of(self.directory_of("all"))
+        self.expect("processes after the run of all", processes, [])
         for title, (_, mode) in together.items():
             self.compare(title, mode, results.get(title, TestResult()), left_of(events, title))
 
@@ -112,8 +121,8 @@ class Promises:
         if mode == "case":
             attributes["isolation"] = "case"
         words = " ".join(f"{key}={quoteattr(value)}" for key, value in attributes.items())
-        command = quoteattr(promise["does"])
-        return f"<test {words}>{self.file()}<env name='PROMISE' value={command}/></test>"
+        variables = {"PROMISE": promise["does"], "MEASURES": promise.get("measures")}
+        return f"<test {words}>{self.file()}{environment(variables)}</test>"
 
     def file(self) -> str:
         """The file of all tests."""
@@ -130,9 +139,8 @@ class Promises:
         """Writes a suite; returns its directory."""
         directory = self.directory_of(title)
         directory.mkdir()
-        variables = {"MARK": "a b", "PROMISE_DIR": str(directory)}
-        lines = [f"<env name='{key}' value='{value}'/>" for key, value in variables.items()]
-        text = "\n".join([*lines, self.type.get("fixture", ""), fixture, *tests.values()])
+        variables = environment({"MARK": "a b", "PROMISE_DIR": str(directory)})
+        text = "\n".join([variables, self.type.get("fixture", ""), fixture, *tests.values()])
         parallel = self.type.get("parallel", 3)
         (directory / "suite.xml").write_text(
             f"<suite name='promises' parallel='{parallel}'>\n{text}\n</suite>\n"
@@ -176,6 +184,9 @@ class Promises:
             run.wait()
         events = list(run.events())
         self.compare(title, mode, observe(events).get(title, TestResult()), left_of(events, title))
+        self.expect(f"{title}: processes after the run", processes_of(directory), [])
+        if file := self.expected(title, mode).get("file"):
+            self.expect(f"{title}: {file} exists", (directory / file).exists(), True)
 
     def expected(self, title: str, mode: str) -> Table:
         """What the table expects of a test."""
@@ -206,12 +217,37 @@ class Promises:
         for case in {case for case, verdict in wanted.items() if verdict == "any"}:
             wanted[case] = found.setdefault(case, "any")
         self.expect(f"{title}: cases", found, wanted)
+        owners = {"": got.measured, **{case.path: case.measured for case in got.by_id.values()}}
+        measured = {owner: values for owner, values in owners.items() if values}
+        third = {self.cases.get("third", ""): expected.get("measured")}
+        wanted_values = {owner: values for owner, values in third.items() if values}
+        self.expect(f"{title}: measured", measured, wanted_values)
 
     def expect(self, what: str, got: object, expected: object) -> None:
         """Remembers a broken promise."""
         self.checked += got == expected
         if got != expected:
             self.broken.append(f"{what}: got {got!r}, expected {expected!r}")
+
+
+def environment(variables: dict[str, str | None]) -> str:
+    """The elements of a suite that set variables."""
+    return "".join(
+        f"<env name='{name}' value={quoteattr(value)}/>"
+        for name, value in variables.items()
+        if value is not None
+    )
+
+
+def processes_of(directory: Path) -> list[str]:
+    """The commands of all processes that have the directory of a suite in their environment."""
+    found = []
+    for process in Path("/proc").glob("[0-9]*"):
+        # It may have ended, or be another user's.
+        with contextlib.suppress(OSError):
+            if f"PROMISE_DIR={directory}\0".encode() in (process / "environ").read_bytes():
+                found.append((process / "cmdline").read_text(errors="replace"))
+    return found
 
 
 def left_of(events: list[Table], title: str) -> int:

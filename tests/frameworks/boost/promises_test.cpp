@@ -4,6 +4,8 @@
 
 #include <cstdlib>
 
+#include <rtf/session.hpp>
+
 BOOST_AUTO_TEST_CASE(first) {}
 
 BOOST_AUTO_TEST_CASE(second)
@@ -11,4 +13,9 @@ BOOST_AUTO_TEST_CASE(second)
     BOOST_TEST(std::system(std::getenv("PROMISE")) == 0);
 }
 
-BOOST_AUTO_TEST_CASE(third) {}
+BOOST_AUTO_TEST_CASE(third)
+{
+    if (const char *high = std::getenv("MEASURES")) {
+        rtf::measure("force", 2.5, "N", 0, std::atof(high));
+    }
+}

@@ -5,6 +5,8 @@
 #include <cppunit/extensions/TestFactoryRegistry.h>
 #include <cppunit/ui/text/TestRunner.h>
 
+#include <rtf/session.hpp>
+
 class Promises : public CppUnit::TestFixture
 {
     CPPUNIT_TEST_SUITE(Promises);
@@ -16,7 +18,12 @@ class Promises : public CppUnit::TestFixture
 public:
     void first() {}
     void second() { CPPUNIT_ASSERT_EQUAL(0, std::system(std::getenv("PROMISE"))); }
-    void third() {}
+    void third()
+    {
+        if (const char *high = std::getenv("MEASURES")) {
+            rtf::measure("force", 2.5, "N", 0, std::atof(high));
+        }
+    }
 };
 
 CPPUNIT_TEST_SUITE_REGISTRATION(Promises);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <rtf/session.hpp>
+
 TEST(Promises, First) {}
 
 TEST(Promises, Second)
@@ -10,4 +12,9 @@ TEST(Promises, Second)
     EXPECT_EQ(std::system(std::getenv("PROMISE")), 0);
 }
 
-TEST(Promises, Third) {}
+TEST(Promises, Third)
+{
+    if (const char *high = std::getenv("MEASURES")) {
+        rtf::measure("force", 2.5, "N", 0, std::atof(high));
+    }
+}

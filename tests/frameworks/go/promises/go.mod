@@ -1,3 +1,3 @@
 module example.org/promises
 
-go 1.20
+go 1.25

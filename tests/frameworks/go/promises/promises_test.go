@@ -17,4 +17,8 @@ func TestSecond(t *testing.T) {
 	}
 }
 
-func TestThird(t *testing.T) {}
+func TestThird(t *testing.T) {
+	if os.Getenv("MEASURES") != "" {
+		t.Attr("force", "2.5")
+	}
+}
