@@ -27,7 +27,8 @@ and a type
     file, param   of its tests
     modes         `process`: one process for all cases; `case`: the same with isolation="case";
                   `always`: each case has a process
-    fixture       an element that each suite has
+    fixture       an element that each suite has. `BLOCKED` are the signals that its programs block
+                  in processes that they start, as a number
     parallel      how many tests run at once, by default 3
     cases         the names of the cases, by default the same
     except        for each promise that it cannot keep: replaces parts of `expected`, or `refused`
