@@ -84,7 +84,11 @@ impl<'a> MatrixExpander<'a> {
             .iter()
             .fold(1_usize, |product, (table, _)| product.saturating_mul(table.rows.len()));
         if product > MAX_PRODUCT {
-            self.report_size(product, span);
+            let size = format!(
+                "{product} combinations before `<matrix-exclude>`, more than {MAX_PRODUCT}"
+            );
+            let hint = "a campaign samples a large space of parameters";
+            self.report_size(&size, hint, span);
             return None;
         }
         let is_excluded = |combination: &Vec<Parameter>| {
@@ -93,7 +97,10 @@ impl<'a> MatrixExpander<'a> {
         let mut combinations = product_of(&dimensions);
         combinations.retain(|combination| !is_excluded(combination));
         if combinations.len() > MAX_COMBINATIONS {
-            self.report_size(combinations.len(), span);
+            let hint = "a campaign samples a large space of parameters; in a suite, exclude \
+                        combinations with `<matrix-exclude>`";
+            let size = format!("{} combinations, more than {MAX_COMBINATIONS}", combinations.len());
+            self.report_size(&size, hint, span);
             return None;
         }
         if combinations.is_empty() {
@@ -184,14 +191,10 @@ impl<'a> MatrixExpander<'a> {
         is_valid
     }
 
-    fn report_size(&mut self, count: usize, span: Span) {
-        let message = format!("the matrix has {count} combinations, more than {MAX_COMBINATIONS}");
-        let problem =
-            Diagnostic::error("matrix-too-large", message).label(self.source.label(span, "")).hint(
-                "a campaign samples a large space of parameters; in a suite, exclude \
-                 combinations with `<matrix-exclude>`",
-            );
-        self.problems.push(problem);
+    fn report_size(&mut self, size: &str, hint: &str, span: Span) {
+        let message = format!("the matrix has {size}");
+        let problem = Diagnostic::error("matrix-too-large", message).hint(hint);
+        self.problems.push(problem.label(self.source.label(span, "")));
     }
 
     fn report(&mut self, code: &str, message: &str, span: Span) {

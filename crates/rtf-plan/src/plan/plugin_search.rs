@@ -225,9 +225,14 @@ fn similar(name: &str, kind: &HostKind, dirs: &[PathBuf]) -> Option<String> {
             )
         })
         .collect();
-    let stem = path.file_stem()?.to_str()?;
-    let found = nearest(stem, known.iter().map(String::as_str))?;
-    Some(format!("did you mean `{found}`?"))
+    // The extension may be what selects the type.
+    let has_extension = hosts::by_extension(path).is_some_and(|other| other.name == kind.name);
+    let extension = path.extension().and_then(OsStr::to_str).filter(|_| has_extension);
+    let stem = if has_extension { path.file_stem() } else { path.file_name() };
+    let found = nearest(stem?.to_str()?, known.iter().map(String::as_str))?;
+    let extension = extension.map(|extension| format!(".{extension}")).unwrap_or_default();
+    let found = path.with_file_name(format!("{found}{extension}"));
+    Some(format!("did you mean `{}`?", found.display()))
 }
 
 /// Returns the default name of a test, fixture or hook: the plug-in's name

@@ -169,7 +169,7 @@ fn missing_plugins_and_programs_of_hooks() {
       note: looked for `Parc.lua` in
       [ROOT]/cell
       [ROOT]/lib/rtf/plugins
-      hint: did you mean `Park`?
+      hint: did you mean `Park.lua`?
     ");
     assert_snapshot!(bench.shown(&hook("on='end'", "<command>./parc.sh</command>")), @"
     no-such-program: there is no program `./parc.sh`
