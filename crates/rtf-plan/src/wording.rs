@@ -24,6 +24,11 @@ pub(crate) fn suggest<'a>(
     }
 }
 
+/// Escapes a text for an attribute in double quotes.
+pub(crate) fn in_attribute(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+}
+
 /// Formats names as a list: "`a`, `b`" with the separator ", ".
 pub(crate) fn quoted<'a>(names: impl IntoIterator<Item = &'a str>, separator: &str) -> String {
     let quoted: Vec<_> = names.into_iter().map(|name| format!("`{name}`")).collect();

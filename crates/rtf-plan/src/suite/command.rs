@@ -6,6 +6,7 @@ use rtf_model::Diagnostic;
 use super::reader::ElementReader;
 use super::schema::{self, ElementSchema, check};
 use super::{Spanned, reference};
+use crate::wording::in_attribute;
 
 /// Reads a `<command>`; returns no words if it is invalid.
 pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Spanned<Vec<String>> {
@@ -66,6 +67,7 @@ fn shell_start(words: &[String]) -> Option<Diagnostic> {
         && is_variable(name)
     {
         let message = format!("no shell reads this command: `{first}` is no program");
+        let value = in_attribute(value);
         let hint = format!("set the variable with `<env name=\"{name}\" value=\"{value}\"/>`");
         return Some(problem(message).hint(hint));
     }

@@ -8,7 +8,7 @@ use super::command::words;
 use super::reader::ElementReader;
 use super::schema::{ElementSchema, check};
 use super::{DeclaredProbe, DeclaredProbeKind, Span, Spanned, middleware, reference};
-use crate::wording::quoted;
+use crate::wording::{in_attribute, quoted};
 
 /// The attributes that modify a probe; each other attribute is a kind of probe.
 const MODIFIERS: [&str; 3] = ["min-rate", "timeout", "every"];
@@ -128,7 +128,8 @@ fn read_url(
     example: &str,
 ) -> Option<DeclaredProbeKind> {
     if example.get(..6).is_some_and(|start| start.eq_ignore_ascii_case("https:")) {
-        let hint = format!("probe it with `command=\"curl -fsS {}\"`", value.value);
+        let url = in_attribute(&value.value);
+        let hint = format!("probe it with `command=\"curl -fsS {url}\"`");
         reader.wrong(name, value, "supports only plain HTTP, not TLS", Some(&hint));
         return None;
     }

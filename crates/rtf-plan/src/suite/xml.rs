@@ -68,7 +68,7 @@ fn malformed(source: &SourceText, text: &str, error: &Error) -> Diagnostic {
     let label = source.label(Span::new(start..start + length), "");
     let (message, hint) = match second_root(error, text, start) {
         Some(message) => (message, Some(ONE_ROOT)),
-        None => (explanation(error, &text[..start]), hint(error)),
+        None => (explanation(error, &text[..start]), hint(error, &text[..start])),
     };
     let problem = Diagnostic::error("malformed-xml", message).label(label);
     match hint {
@@ -94,11 +94,20 @@ fn second_root(error: &Error, text: &str, start: usize) -> Option<String> {
     }
 }
 
-/// A `<` in a text looks like the start of an element.
-fn hint(error: &Error) -> Option<&'static str> {
+/// What to write instead. A `<` after a text looks like the start of an element.
+fn hint(error: &Error, before: &str) -> Option<&'static str> {
+    let (Error::InvalidChar(..) | Error::InvalidChar2(..)) = error else { return None };
+    let (text, element) = before.split_at(before.rfind('<').unwrap_or_default());
+    let text = text.trim_end();
+    if !text.is_empty() && !text.ends_with('>') && !element.starts_with("</") {
+        return Some("a `<` that begins no element is written `&lt;`");
+    }
     match error {
-        Error::InvalidChar2(..) | Error::InvalidChar(..) => {
-            Some("a `<` that begins no element is written `&lt;`")
+        Error::InvalidChar(b'=', ..) | Error::InvalidChar2("a quote", ..) => {
+            Some("an attribute has a value in quotes: `name=\"value\"`")
+        }
+        Error::InvalidChar2("a whitespace", ..) if before.ends_with(['"', '\'']) => {
+            Some("a blank separates attributes; a quote in a value is written `&quot;` or `&apos;`")
         }
         _ => None,
     }
