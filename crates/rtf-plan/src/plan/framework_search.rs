@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use rtf_model::Diagnostic;
 
 use super::framework_kind::TestSubject;
-use super::program::{list, searched_path};
+use super::program::{chmod_advice, list, searched_path};
 use super::search_scope::SearchScope;
 use crate::wording::nearest;
 
@@ -35,7 +35,7 @@ pub(super) fn not_found(
     let dirs = scope.user_dirs();
     let noun = subject.noun();
     if let Some(other) = dirs.iter().map(|dir| dir.join(name)).find(|path| path.exists()) {
-        return wrong_kind(name, subject, &other);
+        return wrong_kind(name, subject, &other.components().collect::<PathBuf>(), scope);
     }
     let message = format!("there is no {noun} `{name}` for a test of type `{kind}`");
     let problem = Diagnostic::error("no-such-plugin", message);
@@ -56,12 +56,17 @@ pub(super) fn not_found(
 }
 
 /// Reports a path of the wrong kind, such as a directory instead of a program.
-fn wrong_kind(name: &str, subject: TestSubject, found: &Path) -> Diagnostic {
+fn wrong_kind(
+    name: &str,
+    subject: TestSubject,
+    found: &Path,
+    scope: &SearchScope<'_>,
+) -> Diagnostic {
     let problem = |message| Diagnostic::error("no-such-plugin", message);
     if subject == TestSubject::Program && found.is_file() {
         return problem(format!("the program `{name}` is not executable"))
             .note(format!("the file is {}", found.display()))
-            .hint(format!("make it executable with `chmod +x {name}`"));
+            .hint(chmod_advice(name, found, scope));
     }
     let other = if found.is_dir() { "directory" } else { "file" };
     problem(format!("`{name}` is a {other}, not a {}", subject.noun()))

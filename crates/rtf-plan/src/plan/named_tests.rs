@@ -54,6 +54,9 @@ fn unknown_test(suite: &SuitePlan, name: &str) -> Diagnostic {
     let problem = suggest(problem, name, known.chain(matrices));
     match problem.hint {
         Some(_) => problem,
-        None => problem.hint(format!("`rtf list {}` shows its tests", suite.file)),
+        None => {
+            let file = shell_words::quote(&suite.file);
+            problem.hint(format!("`rtf list {file}` shows its tests"))
+        }
     }
 }

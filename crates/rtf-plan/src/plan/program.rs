@@ -45,8 +45,8 @@ pub(super) fn find(name: &str, scope: &SearchScope<'_>) -> Result<PathBuf, Box<D
             interpreter_problem(name, &file, scope).map_or(Ok(file), Err)
         } else if file.is_file() {
             let message = format!("the program `{name}` is not executable");
-            let hint = format!("make it executable with `chmod +x {name}`");
-            Err(Diagnostic::error("no-such-program", message).hint(hint).into())
+            let advice = chmod_advice(name, &file, scope);
+            Err(Diagnostic::error("no-such-program", message).hint(advice).into())
         } else {
             let note = format!("looked for {}", file.display());
             Err(no_such_program(name).note(note).into())
@@ -61,6 +61,13 @@ pub(super) fn find(name: &str, scope: &SearchScope<'_>) -> Result<PathBuf, Box<D
         }
     })?;
     interpreter_problem(name, &found, scope).map_or(Ok(found), Err)
+}
+
+/// How to make a file executable: with its name, if that is its path in the user's directory.
+pub(super) fn chmod_advice(name: &str, file: &Path, scope: &SearchScope<'_>) -> String {
+    let is_here = scope.runner.absolute(Path::new(name)) == file;
+    let path = if is_here { name.into() } else { file.to_string_lossy() };
+    format!("make it executable with `chmod +x {}`", shell_words::quote(&path))
 }
 
 /// Reports a program whose interpreter is missing, or that has line ends of Windows: the system
