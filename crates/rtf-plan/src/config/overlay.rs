@@ -317,10 +317,19 @@ impl ParamSubstitution<'_> {
             let own = self.own.iter().find(|own| own.name == name);
             own.map(|own| own.value.clone()).or_else(|| self.params.get(name))
         };
-        *text = param_reference::expand(text, value, &mut |name| missing.push(name.to_owned()));
+        let expanded =
+            param_reference::expand(text, value, &mut |name| missing.push(name.to_owned()));
+        let written = std::mem::replace(text, expanded);
         for name in missing {
-            self.problems.push(self.unknown(&name, span));
+            let is_closed = written.contains(&format!("${{param:{name}}}"));
+            self.problems.push(if is_closed { self.unknown(&name, span) } else { self.open(span) });
         }
+    }
+
+    fn open(&self, span: Span) -> Diagnostic {
+        Diagnostic::error("unknown-param", "`${param:` is not closed")
+            .label(self.source.label(span, "a `}` is missing after it"))
+            .hint("`$${param:` stands for these characters")
     }
 
     fn unknown(&self, name: &str, span: Span) -> Diagnostic {
@@ -330,6 +339,9 @@ impl ParamSubstitution<'_> {
         let known = self.params.view.into_iter().flat_map(|view| view.table("param"));
         match nearest(name, known.map(|(known, _)| known)) {
             Some(near) => problem.hint(format!("did you mean `${{param:{near}}}`?")),
+            None if !param_reference::is_name(name) => {
+                problem.hint("a name is letters, digits, `-` and `_`, a letter first")
+            }
             None => problem.hint(format!(
                 "write it under `[param]` in `rtf.toml`, give `--set {name}=VALUE`, or a default: \
                  `${{param:{name}=VALUE}}`"

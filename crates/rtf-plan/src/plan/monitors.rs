@@ -76,7 +76,10 @@ impl FormulaCheck<'_> {
                 self.at(self.unknown_signal(&reference.name), reference.range.clone(), None)
             })
             .collect();
-        if let Err(errors) = formula.check_units(&|name| self.unit_of(name)) {
+        // Nothing is known about the unit of an unknown signal.
+        if problems.is_empty()
+            && let Err(errors) = formula.check_units(&|name| self.unit_of(name))
+        {
             for error in errors {
                 let problem = Diagnostic::error("unit-mismatch", error.message);
                 problems.push(self.at(problem, error.range, error.hint));
