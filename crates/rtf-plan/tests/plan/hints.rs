@@ -1,173 +1,92 @@
-//! A hint can be followed: what it says repairs the suite.
+//! A hint can be followed: what it says repairs the suite, its files or the command line.
 
+mod desk;
+mod fixtures;
+mod formulas;
+mod limits;
+mod options;
+mod plugins;
+mod suites;
+mod unapplied;
+
+use std::path::{Path, PathBuf};
+
+use regex::Regex;
 use rtf_model::SignalSource;
 
-use crate::bench::Bench;
+use self::desk::{Desk, bench};
 use crate::signals::signals;
 
-/// A suite with a mistake, its hint, and how the mistake is replaced to follow the hint.
-const HINTS: &[(&str, &str, &str, &str)] = &[
-    ("<suite clock='rso'><test>A.lua</test></suite>", "did you mean `ros`?", "'rso'", "'ros'"),
-    (
-        "<suite tset-timeout='1s'><test>A.lua</test></suite>",
-        "did you mean `test-timeout`?",
-        "tset-timeout",
-        "test-timeout",
-    ),
-    ("<suite><tset>A.lua</tset><test>A.lua</test></suite>", "did you mean `test`?", "tset", "test"),
-    (
-        "<suite><test timeout='soon'>A.lua</test></suite>",
-        "write it like `250ms`, `1.5s`, `2min` or `1h 30m`; a bare number is seconds",
-        "soon",
-        "1h 30m",
-    ),
-    (
-        "<suite><fixture><command>./sim</command></fixture><test>A.lua</test></suite>",
-        "write `type=\"process\"`",
-        "<fixture>",
-        "<fixture type=\"process\">",
-    ),
-    (
-        "<suite><fixture type='process'><command>./sim | ./read</command></fixture>\
-         <test>A.lua</test></suite>",
-        "if you want a shell, write `sh -c '…'`",
-        "./sim | ./read",
-        "sh -c './sim | ./read'",
-    ),
-    (
-        "<suite><fixture type='process'><command>./sim</command><ready tcp='5000'/></fixture>\
-         <test>A.lua</test></suite>",
-        "write it like `127.0.0.1:5000`",
-        "'5000'",
-        "'127.0.0.1:5000'",
-    ),
-    (
-        "<suite><fixture type='process'><command>./sim</command><ready http='a:80'/></fixture>\
-         <test>A.lua</test></suite>",
-        "write it like `http://127.0.0.1:8080/health`",
-        "'a:80'",
-        "'http://127.0.0.1:8080/health'",
-    ),
-    (
-        "<suite><fixture type='process'><command>./sim</command><ready file='a' tcp='a:1'/>\
-         </fixture><test>A.lua</test></suite>",
-        "write a separate `<ready>` for each; all of them must pass",
-        "file='a' tcp",
-        "file='a'/><ready tcp",
-    ),
-    (
-        "<suite><fixture type='process'><command>./sim</command><alive http='https://a/up'/>\
-         </fixture><test>A.lua</test></suite>",
-        "probe it with `command=\"curl -fsS https://a/up\"`",
-        "http='https://a/up'",
-        "command=\"curl -fsS https://a/up\"",
-    ),
-    (
-        "<suite><fixture type='process' name='sim'><command>./sim</command>\
-         <provide name='port' log='port \\d+'/></fixture><test>A.lua</test></suite>",
-        "put the value in parentheses: `listening on port (\\d+)`",
-        "port \\d+",
-        "port (\\d+)",
-    ),
-    (
-        "<suite><hook on=''><command>./sim</command></hook><test>A.lua</test></suite>",
-        "the triggers are `failure`, `collapse`, `timeout`, `interrupt`, `fixture-broken`, `end`",
-        "on=''",
-        "on='failure'",
-    ),
-    (
-        "<suite><hook type='lua' on='end'><command>./sim</command></hook>\
-         <test>A.lua</test></suite>",
-        "a program has no type; remove the attribute",
-        " type='lua'",
-        "",
-    ),
-    (
-        "<suite><test>A.lua<hook on='end'><command>./sim</command></hook></test></suite>",
-        "`<hook>` is written directly in `<suite>`",
-        "<test>A.lua<hook on='end'><command>./sim</command></hook></test>",
-        "<test>A.lua</test><hook on='end'><command>./sim</command></hook>",
-    ),
-    (
-        "<suite><test name='a'>A.lua</test><test name='a'>A.lua</test></suite>",
-        "give one of them another `name`",
-        "<suite><test name='a'>",
-        "<suite><test name='b'>",
-    ),
-    (
-        "<suite><test issue='#1'>A.lua</test></suite>",
-        "add `expect=\"failed\"`",
-        "<test ",
-        "<test expect=\"failed\" ",
-    ),
-    (
-        "<suite requires='gpu/x'><test>A.lua</test></suite>",
-        "with `gpu/2`, two suites at a time can use a `gpu`",
-        "gpu/x",
-        "gpu/2",
-    ),
-    (
-        "<suite><fixture type='process' name='sim'><command>./sim ${prot:a}</command></fixture>\
-         <test>A.lua</test></suite>",
-        "did you mean `${port:`?",
-        "${prot:",
-        "${port:",
-    ),
-    (
-        "<suite><signal name='q' ros2='/odom'/><test>A.lua</test></suite>",
-        "write a topic and a field: `/joint_states.position[elbow]`, `/odom.twist.twist.linear.x`",
-        "/odom",
-        "/odom.twist.twist.linear.x",
-    ),
-    (
-        "<suite><signal name='q' yarp='/imu:o'/><test>A.lua</test></suite>",
-        "write a port and the position of a value in its bottle: `/arm/state:o[3]`, `/imu:o[0][2]`",
-        "/imu:o",
-        "/imu:o[0][2]",
-    ),
-    (
-        "<suite><signal name='elbow'><command>./read</command></signal>\
-         <monitor name='m'>always(elbw > 1)</monitor><test>A.lua</test></suite>",
-        "did you mean `elbow`?",
-        "elbw",
-        "elbow",
-    ),
+/// The text around a mistake, in which `{}` stands for it, and its rows: a mistake, its hint, and
+/// what replaces the mistake if a user follows the hint.
+///
+/// The text is a suite, followed by other files. A line `== NAME` begins a file, `== program NAME`
+/// an executable one, `== command line` the inputs and options, `== environment` variables.
+type Table = (&'static str, &'static [(&'static str, &'static str, &'static str)]);
+
+const TABLES: [&[Table]; 6] = [
+    suites::TABLES,
+    fixtures::TABLES,
+    plugins::TABLES,
+    options::TABLES,
+    limits::TABLES,
+    formulas::TABLES,
 ];
 
-fn bench() -> Bench {
-    let bench = Bench::new();
-    for program in ["sim", "read"] {
-        bench.program(&format!("cell/{program}"), "");
-    }
-    bench.file("cell/A.lua", "");
-    bench.file("share/rtf/fixtures/clock.py", "");
-    for module in ["__init__", "probe", "ros1_signals", "ros2_signals", "yarp_signals"] {
-        bench.file(&format!("share/rtf/fixtures/rtf_fixtures/{module}.py"), "");
-    }
-    bench
-}
-
-/// The messages and hints of a suite.
-fn problems(bench: &Bench, suite: &str) -> Vec<(String, Option<String>)> {
-    bench.file("cell/s.xml", suite);
-    let found = bench.build(&["s.xml"]).diagnostics;
-    found.into_iter().map(|problem| (problem.message, problem.hint)).collect()
-}
-
 #[test]
-fn suites_are_valid_after_their_hints_were_followed() {
-    let bench = bench();
+fn nothing_is_wrong_after_a_hint_was_followed() {
+    let mut desk = Desk::new();
     let mut wrong = Vec::new();
-    for (suite, hint, mistake, repair) in HINTS {
-        assert!(suite.contains(mistake), "{suite}");
-        let before = problems(&bench, suite);
-        let hints: Vec<_> = before.iter().filter_map(|(_, hint)| hint.as_deref()).collect();
-        let after = problems(&bench, &suite.replace(mistake, repair));
-        if hints != [*hint] || !after.is_empty() {
-            wrong.push((suite, before, after));
+    for (around, rows) in TABLES.concat() {
+        for (mistake, hint, repair) in rows {
+            let before = desk.problems(&around.replace("{}", mistake));
+            let hints: Vec<_> = before.iter().filter_map(|(_, hint)| hint.as_deref()).collect();
+            let after = desk.problems(&around.replace("{}", repair));
+            if hints != [*hint] || !after.is_empty() {
+                wrong.push((mistake, hint, before, after));
+            }
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Each text after the word `hint` in the sources is in a table, or one that none can apply.
+#[test]
+fn each_hint_is_in_a_table() {
+    let literal = Regex::new(
+        r#"\bhint\w*\s*(?:\(|=>?|:)\s*(?:(?:Some|format!)\(\s*)*"((?:[^"\\]|\\(?s:.))*)""#,
+    );
+    let literal = literal.unwrap();
+    let rows = TABLES.concat().into_iter().flat_map(|(_, rows)| rows.iter().map(|row| row.1));
+    let known: Vec<&str> = rows.chain(unapplied::HINTS.iter().copied()).collect();
+    let mut unknown = Vec::new();
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    for file in ["rtf-plan/src", "rtf-monitor/src"].iter().flat_map(|dir| files(&crates.join(dir)))
+    {
+        let text = std::fs::read_to_string(&file).unwrap();
+        let code = text.split("#[cfg(test)]").next().unwrap();
+        for found in literal.captures_iter(code) {
+            let pattern = pattern(&found[1]);
+            if !known.iter().any(|hint| pattern.is_match(hint)) {
+                unknown.push(format!("{}: {}", file.display(), &found[1]));
+            }
+        }
+    }
+    assert!(unknown.is_empty(), "{unknown:#?}");
+}
+
+/// What a literal stands for. A part in braces may be anything.
+fn pattern(literal: &str) -> Regex {
+    let text = Regex::new(r"\\\n\s*").unwrap().replace_all(literal, "");
+    let text = text.replace("\\\"", "\"").replace("\\\\", "\\");
+    let text = regex::escape(&text.replace("{{", "{").replace("}}", "}"));
+    let text = Regex::new(r"\\\{.*?\\\}").unwrap().replace_all(&text, ".*");
+    Regex::new(&format!("^{text}$")).unwrap()
+}
+
+fn files(dir: &Path) -> Vec<PathBuf> {
+    let entries = dir.read_dir().unwrap().map(|entry| entry.unwrap().path());
+    entries.flat_map(|path| if path.is_dir() { files(&path) } else { vec![path] }).collect()
 }
 
 /// What a running program of signals reports about times of another clock.
