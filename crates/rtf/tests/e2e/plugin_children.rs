@@ -4,7 +4,7 @@
 use rtf_model::{MessageKind, Verdict};
 
 use crate::host_modes::MODES;
-use crate::support::{Folder, build_cpp, nothing_left, root};
+use crate::support::{Folder, build_ada, build_cpp, nothing_left, root};
 
 /// How a process is started, and how it ends.
 type Ways = &'static [(&'static str, &'static str)];
@@ -194,6 +194,18 @@ const RUBY_WAYS: Ways = &[
     ("backticks", "3"),
 ];
 
+/// The ways of `sdk/ada/tests/children`. `OS_Exit` and `OS_Abort` end a child of `fork`.
+const ADA_WAYS: Ways = &[
+    ("exit", "3"),
+    ("abort", "134"),
+    ("return", "0"),
+    ("itself", "2"),
+    ("spawn", "3"),
+    ("non-blocking", "0"),
+    ("expect", "3"),
+    ("system", "3"),
+];
+
 /// Each way twice: in a test that passes, and in one that fails.
 fn the_verdict_is_the_plugins_own(plugin: &str, ways: Ways) {
     let cpp = build_cpp(&root().join("crates/rtf/tests/e2e/cpp"), "e2e-cpp").join("Forks.so");
@@ -231,6 +243,14 @@ fn the_verdict_is_the_plugins_own(plugin: &str, ways: Ways) {
             assert!(attempt.leaked.is_empty(), "{how}, {}: {:?}", mode.name, attempt.leaked);
         }
     }
+}
+
+#[test]
+fn of_an_ada_plugin() {
+    let project = root().canonicalize().expect("a path").join("sdk/ada/tests/tests.gpr");
+    let built = build_ada(&project, "PLUGIN", &["children".to_owned()]);
+    let plugin = built.join("children/libchildren.so");
+    the_verdict_is_the_plugins_own(&plugin.display().to_string(), ADA_WAYS);
 }
 
 #[test]
