@@ -29,9 +29,10 @@ impl FrameworkHost {
         name: &'static str,
         framework: Box<dyn Framework + Send + Sync>,
         session: Session,
+        running: RunningProgram,
     ) -> Self {
-        let (running, plugin) = (RunningProgram::default(), Plugin::default());
-        Self { name, framework, session, running, scratch: Arc::default(), plugin }
+        let (scratch, plugin) = (Arc::default(), Plugin::default());
+        Self { name, framework, session, running, scratch, plugin }
     }
 }
 

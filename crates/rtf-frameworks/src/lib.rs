@@ -47,6 +47,9 @@ pub fn run(args: Vec<OsString>) -> Result<(), Box<dyn std::error::Error>> {
     let session = Session::open()?;
     // The supervisor kills what programs leave behind.
     rtf_process::adopt_orphans()?;
-    let host = host::FrameworkHost::new(name, framework, session.clone());
-    Ok(rtf_host::serve(&session, host)?)
+    let running = supervisor::RunningProgram::default();
+    let host = host::FrameworkHost::new(name, framework, session.clone(), running.clone());
+    let served = rtf_host::serve(&session, host);
+    running.await_rest();
+    Ok(served?)
 }

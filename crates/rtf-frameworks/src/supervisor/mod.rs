@@ -11,9 +11,11 @@ mod tests;
 
 use std::cell::Cell;
 use std::collections::VecDeque;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use rtf_host::Session;
@@ -25,9 +27,11 @@ use rustix::process::{Pid, Signal, getpgid, kill_process_group};
 use crate::case::{CaseResult, ListedCase, Repetition, Selection};
 use crate::case_reporter::CaseReporter;
 use crate::framework::{Framework, StackDump, TestProgram};
+use crate::last_output::OutputStream;
 use crate::wanted::WantedCases;
 use fork_server::{ForkPoint, ForkServer};
 use process::{ProcessEnd, Termination};
+use streams::Source;
 
 /// How long killed processes may take to end, and the time between polls.
 const SWEEP_LIMIT: Duration = Duration::from_secs(5);
@@ -39,6 +43,8 @@ pub struct RunningProgram {
     pid: Arc<Mutex<Option<Pid>>>,
     /// Whether the runner had stacks dumped, which can end the program.
     was_dumped: Arc<AtomicBool>,
+    /// Reads what is left of it after a stop.
+    rest: Arc<Mutex<Option<JoinHandle<()>>>>,
 }
 
 impl RunningProgram {
@@ -57,6 +63,23 @@ impl RunningProgram {
         self.was_dumped.load(Ordering::Relaxed)
     }
 
+    /// Reads the outputs of a stopped program until they are closed. Its report stays open so long.
+    fn keep_reading(&self, outputs: Vec<(OutputStream, File)>, report: Option<Source>) {
+        let rest = std::thread::spawn(move || {
+            streams::pass_on(outputs);
+            drop(report);
+        });
+        *self.rest.lock().unwrap_or_else(PoisonError::into_inner) = Some(rest);
+    }
+
+    /// Waits until nothing that a stopped program has started has its outputs.
+    pub fn await_rest(&self) {
+        let rest = self.rest.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let Some(rest) = rest {
+            drop(rest.join());
+        }
+    }
+
     /// Sends a signal to its process group.
     pub fn signal(&self, signal: Signal) {
         // The lock is held: the process is reaped only after it was removed here.
@@ -72,7 +95,10 @@ impl RunningProgram {
 /// output.
 #[must_use]
 pub fn dump_stack(running: &RunningProgram, kind: StackDump, file: &Path) -> Option<String> {
-    let pid = running.pid()?;
+    let Some(pid) = running.pid() else {
+        let has_rest = running.rest.lock().unwrap_or_else(PoisonError::into_inner).is_some();
+        return has_rest.then(|| "the program has ended, and left processes".to_owned());
+    };
     running.was_dumped.store(true, Ordering::Relaxed);
     stack::dump(kind, pid, file)
 }

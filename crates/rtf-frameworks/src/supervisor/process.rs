@@ -78,9 +78,18 @@ pub(super) fn run(
     test.running.set(None);
     let status = wait_for(pid).map_err(|error| format!("the program was lost: {error}"))?;
     process.drain(cases);
-    let RunningProcess { mut reader, mut termination, last_output, .. } = process;
+    let RunningProcess { mut reader, mut termination, last_output, source, mut outputs, .. } =
+        process;
     if test.is_stopping() {
         termination = Termination::Stopped;
+        let report = match source {
+            Some(Source::File(file)) if test.framework.channel() == ReportChannel::Stdout => {
+                outputs.push((OutputStream::Stdout, file));
+                None
+            }
+            report => report,
+        };
+        test.running.keep_reading(outputs, report);
     }
     let is_killed = !matches!(termination, Termination::Exited);
     let reports = matches!(termination, Termination::Exited | Termination::CaseTimeout(_));

@@ -1,12 +1,13 @@
 //! The streams of a process: where its report, its outputs and its session arrive.
 
 use std::fs::File;
-use std::io::{ErrorKind, Read};
+use std::io::{ErrorKind, Read, Write as _};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::os::fd::{AsFd, AsRawFd as _, BorrowedFd, OwnedFd, RawFd};
 use std::path::Path;
 
-use rustix::io::FdFlags;
+use rustix::event::{PollFd, PollFlags, poll};
+use rustix::io::{FdFlags, retry_on_intr};
 use rustix::pipe::PipeFlags;
 
 use crate::framework::{Framework, Launch, OpenChannel, ReportChannel};
@@ -203,6 +204,33 @@ pub(super) fn open_outputs(
         rustix::io::fcntl_dupfd_cloexec(rustix::stdio::stderr(), AFTER_STANDARD)?
     };
     Ok(Outputs { report, watched, theirs: [stdout, stderr] })
+}
+
+/// Passes on what processes print that a stopped program has left, until they have closed the
+/// outputs: while they use their grace, a write to a closed pipe would kill them.
+pub(super) fn pass_on(mut outputs: Vec<(OutputStream, File)>) {
+    let mut piece = [0; 4096];
+    while !outputs.is_empty() {
+        let watched = outputs.iter().map(|(_, file)| PollFd::new(file, PollFlags::IN));
+        let mut fds: Vec<PollFd<'_>> = watched.collect();
+        if retry_on_intr(|| poll(&mut fds, None)).is_err() {
+            return;
+        }
+        outputs.retain_mut(|(stream, file)| match file.read(&mut piece) {
+            Ok(0) => false,
+            Ok(count) => {
+                let bytes = &piece[..count];
+                // The runner may be gone.
+                drop(match stream {
+                    OutputStream::Stdout => std::io::stdout().write_all(bytes),
+                    OutputStream::Stderr => std::io::stderr().write_all(bytes),
+                });
+                drop(std::io::stdout().flush());
+                true
+            }
+            Err(error) => matches!(error.kind(), ErrorKind::Interrupted | ErrorKind::WouldBlock),
+        });
+    }
 }
 
 /// A pipe: our end, which does not block, and the program's end.
