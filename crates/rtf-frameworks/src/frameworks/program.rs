@@ -72,7 +72,7 @@ impl Framework for Program {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::framework::OutputStream;
+    use crate::last_output::OutputStream;
 
     fn result(end: ExitStatus, line: &str) -> (Option<Outcome>, Option<String>) {
         let mut output = LastOutput::default();
