@@ -44,10 +44,27 @@ for header in "${yarp_headers[@]}"; do
 done
 yarp_options+=("-DCMAKE_CXX_FLAGS=$yarp_flags")
 
-# The name server also joins the multicast group 224.2.1.1, on the interface of the default route. Here
-# it stays on the loopback interface.
-yarp_multicast=src/libYARP_os/src/yarp/os/impl/DgramTwoWayStream.cpp
-yarp_patch='s/dmcast->join(addr, 1)/dmcast->join(addr, 1, ACE_TEXT("lo"))/'
+# The name server also joins the multicast group 224.2.1.1, on the interface of the default route: here
+# it stays on the loopback interface. The simulated motors do not stop their thread, which crashes in one
+# of ten stops.
+yarp_patches=(
+  src/libYARP_os/src/yarp/os/impl/DgramTwoWayStream.cpp
+  's/dmcast->join(addr, 1)/dmcast->join(addr, 1, ACE_TEXT("lo"))/'
+  src/devices/fakeMotionControl/fakeMotionControl.cpp
+  's/yCTrace(FAKEMOTIONCONTROL) << " close()";/yarp::os::PeriodicThread::stop();/'
+)
+
+# Changes the sources.
+yarp_patch() {
+  local file script
+  while [ $# -gt 0 ]; do
+    file=$yarp_work/sources/$1 script=$2
+    cp "$file" "$file.before"
+    sed -i "$script" "$file"
+    ! cmp -s "$file" "$file.before" || die "$1 is not as expected: there is nothing to change"
+    shift 2
+  done
+}
 
 yarp_download() {
   local tarball=$yarp_work/yarp_middleware-$yarp_version.tar.gz
@@ -62,8 +79,7 @@ yarp_download() {
     mkdir -p "$yarp_work/sources"
     tar -xf "$tarball" -C "$yarp_work/sources" --strip-components 1
     sed -i 's/DEFAULT ON/DEFAULT OFF/' "$yarp_work"/sources/src/{devices,carriers}/*/CMakeLists.txt
-    sed -i "$yarp_patch" "$yarp_work/sources/$yarp_multicast"
-    grep -q 'ACE_TEXT("lo")' "$yarp_work/sources/$yarp_multicast" || die "$yarp_multicast was not patched"
+    yarp_patch "${yarp_patches[@]}"
     touch "$yarp_work/sources/complete"
   fi
   # YARP's CMake modules, which its users need, too.
@@ -108,7 +124,7 @@ need_packages libace-dev libeigen3-dev libtinyxml-dev libedit-dev libsqlite3-dev
 
 yarp_key=$(
   {
-    printf '%s\n' "$yarp_sha256" "$ycm_version" "$yarp_patch" "${yarp_options[@]}"
+    printf '%s\n' "$yarp_sha256" "$ycm_version" "${yarp_patches[@]}" "${yarp_options[@]}"
     c++ --version
     python3 -c 'import sys; print(sys.executable, sys.version)'
   } | sha256sum | cut -c1-12
