@@ -43,7 +43,7 @@ pub struct RunningProgram {
     pid: Arc<Mutex<Option<Pid>>>,
     /// Whether the runner had stacks dumped, which can end the program.
     was_dumped: Arc<AtomicBool>,
-    /// Reads what is left of it after a stop.
+    /// Reads what its leftover processes print after a stop.
     rest: Arc<Mutex<Option<JoinHandle<()>>>>,
 }
 
