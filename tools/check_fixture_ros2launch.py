@@ -206,7 +206,10 @@ def broken(rtf: str, suite: str, home: Path) -> None:
         expect("exit code", run.wait(), 1)
         expect("reason", run.reason("fixture-broken"), f"set-up failed: {reason}")
         first = "[INFO] [launch]: Default logging verbosity"
-        expect("the output is shown once", run.output.read_text().count(first), 1)
+        # A talker that is interrupted while it starts prints so much that the first line is cut.
+        shown = run.output.read_text()
+        expect("the output is shown once", shown.count("last lines:"), 1)
+        expect("no line is shown twice", shown.count(first) <= 1, True)
 
 
 def crashes_at_the_end(rtf: str, suite: str, home: Path) -> None:
