@@ -64,6 +64,7 @@ test('failed tests are rerun from the page', async () => {
         await bench.write('suite.xml', BROKEN.replace('"fail">Ends', '"through">Step'));
         await page.evaluate((to) => (location.hash = to), `#/runs/${past}`);
         await guarded.rowIs('Breaks', 'failed');
+        await guarded.see('failed', 'section.summary');
         await rerun(guarded);
         await guarded.rowIs('Breaks', 'passed');
         await guarded.see('green', 'section.summary');
