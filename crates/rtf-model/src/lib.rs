@@ -9,6 +9,8 @@
 //! This crate is plain data: no I/O, no threads, no clock. [`plain_text()`] and [`FailureLine`] read
 //! what a program printed.
 
+#![warn(missing_docs)]
+
 mod clock;
 mod diagnostic;
 mod event;

@@ -1,6 +1,8 @@
 //! Questions to the store, and their answers. The answers serialise to the JSON of
 //! `rtf history`.
 
+#![warn(missing_docs)]
+
 mod campaigns;
 mod changes;
 mod columns;

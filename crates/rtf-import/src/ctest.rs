@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::error::Failure;
+use crate::error::ImportError;
 
 /// A test of CTest.
 #[derive(Clone, Debug, Default)]
@@ -66,10 +66,10 @@ struct Property {
 }
 
 /// Lists the tests of a build directory.
-pub fn list(build: &Path, config: Option<&str>) -> Result<Vec<ListedTest>, Failure> {
+pub fn list(build: &Path, config: Option<&str>) -> Result<Vec<ListedTest>, ImportError> {
     if !build.join("CTestTestfile.cmake").is_file() {
         let error = format!("`{}` is no build directory of CMake with tests", build.display());
-        return Err(Failure::input(error).hint(
+        return Err(ImportError::new(error).hint(
             "it must contain `CTestTestfile.cmake`: configure a project that calls \
              `enable_testing()`",
         ));
@@ -80,13 +80,13 @@ pub fn list(build: &Path, config: Option<&str>) -> Result<Vec<ListedTest>, Failu
         command.args(["-C", config]);
     }
     let output = command.output().map_err(|error| {
-        Failure::input(format!("`ctest` cannot be started: {error}"))
+        ImportError::new(format!("`ctest` cannot be started: {error}"))
             .hint("install CMake (Debian: cmake)")
     })?;
     let document: Document = serde_json::from_slice(&output.stdout).map_err(|error| {
         let printed = String::from_utf8_lossy(&output.stderr).trim().to_owned();
         let error = format!("`ctest --show-only=json-v1` printed no list of tests: {error}");
-        Failure::input(error).hint(match printed.as_str() {
+        ImportError::new(error).hint(match printed.as_str() {
             "" => "it needs CMake 3.14 or later".to_owned(),
             printed => format!("it printed: {printed}"),
         })

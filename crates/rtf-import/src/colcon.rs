@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::suite_file::ImportedTest;
-use super::{Import, ctest, recognize, rtf_suites};
-use crate::error::Failure;
+use crate::suite_file::ImportedTest;
+use crate::{Import, ctest, recognize, rtf_suites};
+use crate::error::ImportError;
 
 /// Directories with tests of a Python package.
 const TEST_DIRS: [&str; 2] = ["test", "tests"];
@@ -16,7 +16,7 @@ const NO_SOURCES: [&str; 3] = ["build", "install", "log"];
 const DEPTH: usize = 8;
 
 /// Finds the tests of all packages that were built.
-pub fn import(workspace: &Path) -> Result<Import, Failure> {
+pub fn import(workspace: &Path) -> Result<Import, ImportError> {
     let build = workspace.join("build");
     let mut packages: Vec<PathBuf> = match std::fs::read_dir(&build) {
         Ok(entries) => entries.filter_map(Result::ok).map(|it| it.path()).collect(),
@@ -26,7 +26,7 @@ pub fn import(workspace: &Path) -> Result<Import, Failure> {
     packages.sort();
     if packages.is_empty() {
         let error = format!("`{}` contains no packages that colcon has built", build.display());
-        return Err(Failure::input(error).hint("build the workspace with `colcon build`"));
+        return Err(ImportError::new(error).hint("build the workspace with `colcon build`"));
     }
     let mut sources = Vec::new();
     find_packages(workspace, DEPTH, &mut sources);
@@ -57,7 +57,7 @@ pub fn import(workspace: &Path) -> Result<Import, Failure> {
     if tests.is_empty() && suites.is_empty() {
         let error = format!("the packages in `{}` have no tests", build.display());
         let hint = "build them with `colcon build --cmake-args -DBUILD_TESTING=ON`";
-        return Err(Failure::input(error).hint(hint));
+        return Err(ImportError::new(error).hint(hint));
     }
     let name = workspace.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let source = format!("the colcon workspace {}", workspace.display());

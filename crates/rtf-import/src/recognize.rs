@@ -8,8 +8,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use super::ctest::ListedTest;
-use super::suite_file::ImportedTest;
+use crate::ctest::ListedTest;
+use crate::suite_file::ImportedTest;
 
 /// Properties of a test that the other types also have, or do not need.
 const PORTABLE: [&str; 12] = [

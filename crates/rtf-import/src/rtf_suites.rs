@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::ctest::ListedTest;
-use crate::error::Failure;
+use crate::ctest::ListedTest;
+use crate::error::ImportError;
 
 /// The element of `package.xml` that exports a suite.
 const EXPORT: &str = "rtf_suite";
@@ -40,7 +40,7 @@ pub fn add(suites: &mut Vec<ExistingSuite>, mut suite: ExistingSuite) {
 }
 
 /// The suites in `<export><rtf_suite>FILE</rtf_suite></export>` of a package's `package.xml`.
-pub fn exported(package: &Path) -> Result<Vec<ExistingSuite>, Failure> {
+pub fn exported(package: &Path) -> Result<Vec<ExistingSuite>, ImportError> {
     let manifest = package.join("package.xml");
     let Ok(text) = std::fs::read_to_string(&manifest) else { return Ok(Vec::new()) };
     let (start, end) = (format!("<{EXPORT}>"), format!("</{EXPORT}>"));
@@ -49,7 +49,7 @@ pub fn exported(package: &Path) -> Result<Vec<ExistingSuite>, Failure> {
         let file = package.join(name.trim());
         let file = file.canonicalize().map_err(|_| {
             let error = format!("`{}` exports a suite that does not exist", manifest.display());
-            Failure::input(error).hint(format!("there is no file `{}`", file.display()))
+            ImportError::new(error).hint(format!("there is no file `{}`", file.display()))
         })?;
         Ok(ExistingSuite { file, env: Vec::new() })
     };

@@ -1,41 +1,17 @@
 //! `rtf import`: writes a suite file with the tests of a build directory or workspace.
-//!
-//! [`ctest`] lists the tests of CTest, [`recognize`] finds the framework of each,
-//! [`colcon`] finds the packages of a workspace, and [`suite_file`] writes the suite.
-//! [`rtf_suites`] finds suites that exist already.
-
-mod colcon;
-mod ctest;
-mod recognize;
-mod rtf_suites;
-mod suite_file;
 
 use std::collections::BTreeMap;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
+use rtf_import::{ExistingSuite, Import, ImportError, absolute, from_colcon, from_ctest};
 use rtf_report::escape;
 
 use super::VerbResult;
 use crate::cli::{ImportOutput, ImportVerb};
 use crate::error::Failure;
 use crate::terminal;
-use rtf_suites::ExistingSuite;
-use suite_file::ImportedTest;
-
-/// The tests that were found, and how to run them.
-struct Import {
-    /// The suite's name.
-    name: String,
-    /// Where they were found.
-    source: String,
-    tests: Vec<ImportedTest>,
-    /// Suites that exist already.
-    suites: Vec<ExistingSuite>,
-    /// A shell command that has to run before `rtf`.
-    set_up: Option<String>,
-}
 
 /// Imports tests.
 pub fn run(verb: &ImportVerb) -> VerbResult {
@@ -46,33 +22,11 @@ pub fn run(verb: &ImportVerb) -> VerbResult {
         }
         ImportVerb::Colcon { workspace, output } => {
             refuse_existing(output)?;
-            (colcon::import(&absolute(workspace)?)?, output)
+            (from_colcon(&absolute(workspace)?)?, output)
         }
     };
     write(&import, output)?;
     Ok(ExitCode::SUCCESS)
-}
-
-fn from_ctest(build: &Path, config: Option<&str>) -> Result<Import, Failure> {
-    let build = absolute(build)?;
-    let (listed, suites) = rtf_suites::take(ctest::list(&build, config)?);
-    let tests = recognize::tests(&listed, &build, config);
-    if tests.is_empty() && suites.is_empty() {
-        let error = format!("`{}` has no tests", build.display());
-        let hint = match ctest::has_configurations(&build) && config.is_none() {
-            true => "choose a configuration, for example with `-C Release`",
-            false => "configure it with `-DBUILD_TESTING=ON`",
-        };
-        return Err(Failure::input(error).hint(hint));
-    }
-    let name = ctest::project_name(&build);
-    let source = format!("the build directory {}", build.display());
-    Ok(Import { name, source, tests, suites, set_up: None })
-}
-
-fn absolute(path: &Path) -> Result<PathBuf, Failure> {
-    let found = path.canonicalize().ok().filter(|path| path.is_dir());
-    found.ok_or_else(|| Failure::input(format!("there is no directory `{}`", path.display())))
 }
 
 /// Fails early, before programs are started.
@@ -97,7 +51,7 @@ fn write(import: &Import, output: &ImportOutput) -> Result<(), Failure> {
         Some(parent) if !parent.as_os_str().is_empty() => absolute(parent)?,
         _ => absolute(Path::new("."))?,
     };
-    let text = suite_file::text(&import.name, &import.source, &import.tests, &dir);
+    let text = import.suite(&dir);
     let written = match output.force {
         true => std::fs::write(file, text),
         false => std::fs::File::create_new(file)
@@ -152,4 +106,11 @@ fn existing_suites(suites: &[ExistingSuite]) -> Vec<String> {
         commands.push((&suite.env, format!("{env}rtf run {file}")));
     }
     commands.into_iter().map(|(_, command)| command).collect()
+}
+
+impl From<ImportError> for Failure {
+    fn from(mut error: ImportError) -> Self {
+        let hint = error.hint.take();
+        Self::input(error).maybe_hint(hint)
+    }
 }
