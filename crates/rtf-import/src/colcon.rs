@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::error::ImportError;
 use crate::suite_file::ImportedTest;
 use crate::{Import, ctest, recognize, rtf_suites};
-use crate::error::ImportError;
 
 /// Directories with tests of a Python package.
 const TEST_DIRS: [&str; 2] = ["test", "tests"];

@@ -14,6 +14,7 @@
 mod clock;
 mod diagnostic;
 mod event;
+pub mod exit_code;
 mod failure_line;
 mod fault;
 mod finding;

@@ -27,7 +27,7 @@ use super::judged::{JUDGEMENT, Judged};
 use super::read_list;
 use super::start::CampaignStart;
 use crate::error::Failure;
-use crate::executor::cluster::Cluster;
+use rtf_cluster::Cluster;
 
 pub const DESCRIPTION: &str = "campaign.json";
 const EPISODES: &str = "episodes.jsonl";

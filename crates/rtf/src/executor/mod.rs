@@ -2,7 +2,6 @@
 //! their runs and merges them; `spec/executors.md`. Campaigns use the same jobs.
 //!
 //! - [`options`]: what the command line says about the executor.
-//! - [`mod@cluster`]: a job whose tasks each execute a command. Knows no tests.
 //! - [`submission`]: the directory of a submission.
 //! - [`follow`]: waits for the tasks.
 //! - [`stop`]: stops the tasks of a job.
@@ -11,7 +10,6 @@
 //! - [`array_task`]: `rtf run` as one of the tasks.
 
 mod array_task;
-pub mod cluster;
 mod collect;
 pub mod follow;
 mod options;
@@ -37,8 +35,8 @@ use rtf_plan::plan::Plan;
 use rtf_plan::select::{Shard, ShardBy};
 
 pub use array_task::{ArrayTask, last_attempt};
-use cluster::{Cluster, ClusterError, Job, JobArray};
 pub use options::{cluster, refuse_unused, shards};
+use rtf_cluster::{Cluster, ClusterError, Job, JobArray};
 use submission::Submission;
 
 /// The file with the exit code of an attempt.

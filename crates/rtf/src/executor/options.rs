@@ -5,13 +5,13 @@ use std::time::Duration;
 
 use rtf_plan::plan::Plan;
 
-use super::cluster::Cluster;
-use super::cluster::kubernetes::Kubernetes;
-use super::cluster::slurm::Slurm;
 use super::stop::STOP_GRACE;
 use super::submission::text;
 use crate::cli::{ClusterArgs, ExecutorOption};
 use crate::error::Failure;
+use rtf_cluster::Cluster;
+use rtf_cluster::kubernetes::Kubernetes;
+use rtf_cluster::slurm::Slurm;
 
 /// The domain of extended resources of Kubernetes.
 const RESOURCE_DOMAIN: &str = "rtf";

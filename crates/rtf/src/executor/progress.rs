@@ -9,11 +9,11 @@ use rtf_model::EventKind;
 use rtf_report::journal;
 use rtf_report::run_dir::JOURNAL;
 
-use super::cluster::{Job, JobState};
 use super::submission::Submission;
 use super::task_progress::TaskProgress;
 use crate::diagnostics::count;
 use crate::terminal;
+use rtf_cluster::{Job, JobState};
 
 /// Prints the progress when it has changed.
 pub struct Progress<'a> {

@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use rtf_engine::guard::StopRequests;
 
-use super::cluster::{ClusterError, Job, TaskState};
 use crate::terminal;
+use rtf_cluster::{ClusterError, Job, TaskState};
 
 /// The file that exists when the user has cancelled the tasks.
 pub const CANCELLED: &str = "cancelled";

@@ -9,9 +9,9 @@ use rtf_plan::plan::Plan;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
-use super::cluster::Cluster;
 use super::last_attempt;
 use crate::error::Failure;
+use rtf_cluster::Cluster;
 
 /// The directory of all submissions in a results directory: hidden, so that `rtf-results/*` names
 /// runs only.
@@ -157,7 +157,7 @@ fn cannot(action: &str, path: &Path, error: &io::Error) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::executor::cluster::slurm::Slurm;
+    use rtf_cluster::slurm::Slurm;
 
     #[test]
     fn the_arguments_follow_the_verb() {

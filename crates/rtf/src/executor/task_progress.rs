@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use rtf_report::escape;
 
-use super::cluster::{Job, JobState};
 use crate::diagnostics::count;
 use crate::terminal;
+use rtf_cluster::{Job, JobState};
 
 /// Prints the state of the tasks when it has changed.
 pub struct TaskProgress {

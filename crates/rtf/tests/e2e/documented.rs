@@ -111,7 +111,7 @@ fn every_option() {
 fn every_exit_code() {
     let code = Regex::new(r"pub const (\w+): u8 = (\d+);").expect("a pattern");
     let spec = read("spec/exit-codes.md");
-    let constants = read("crates/rtf/src/exit.rs");
+    let constants = read("crates/rtf-model/src/exit_code.rs");
     let help = Folder::new().rtf(&["--help"]).stdout;
     let known: Vec<_> = code.captures_iter(&constants).collect();
     assert_eq!(known.len(), 7);

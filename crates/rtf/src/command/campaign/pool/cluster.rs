@@ -15,12 +15,12 @@ use crate::campaign::arrays::CampaignArray;
 use crate::campaign::directory::{CampaignDir, CampaignJobs};
 use crate::campaign::read_list;
 use crate::error::Failure;
-use crate::executor::cluster::{Job, JobArray};
 use crate::executor::follow::{PollTimer, warn_once};
 use crate::executor::stop::{CANCELLED, Stop};
 use crate::executor::task_progress::TaskProgress;
 use crate::executor::{EXIT_CODE, cluster_failure, last_attempt, print_manifest};
 use crate::{exit, terminal};
+use rtf_cluster::{Job, JobArray};
 
 /// SIGTERM.
 const TERM: i32 = 15;

@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::super::{JobState, TaskState};
 use super::manifest::FINAL_CODES;
-use crate::exit;
+use rtf_model::exit_code;
 
 /// The index of a pod.
 const INDEX: &str = "batch.kubernetes.io/job-completion-index";
@@ -180,7 +180,7 @@ impl Object {
             return Some(String::new());
         };
         let Terminated { exit_code, reason, message } = ended;
-        if *exit_code == i64::from(exit::FAILED) {
+        if *exit_code == i64::from(exit_code::FAILED) {
             return None;
         }
         let reason = if reason == "Error" { "" } else { reason };

@@ -13,7 +13,7 @@ use super::{
 };
 
 /// Calls a program with the number and the attempt of the task, see
-/// [`ArrayTask`](crate::executor::ArrayTask).
+/// `--array-task`.
 const TASK: &str = r#"#!/bin/sh
 # Arguments: the directory of the submission, a program, its verb, and further arguments.
 dir=$1 program=$2 verb=$3

@@ -21,7 +21,7 @@ const MANIFEST: &str = "job.json";
 const TASKS: &str = "tasks";
 
 /// Calls a program with the number of the task and a new attempt, see
-/// [`ArrayTask`](crate::executor::ArrayTask). An attempt is a directory that did not exist before:
+/// `--array-task`. An attempt is a directory that did not exist before:
 /// Kubernetes does not number the pods of an index.
 const TASK: &str = r#"# Arguments: the directory of the submission, a program, its verb, and further arguments.
 dir=$1 program=$2 verb=$3

@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::super::{JobArray, SCRIPT};
 use super::Kubernetes;
-use crate::exit;
+use rtf_model::exit_code;
 
 /// The label of a Job and of its pods; its value is the name of the Job.
 pub const LABEL: &str = "app.kubernetes.io/instance";
@@ -19,7 +19,7 @@ const PER_INDEX_LIMIT: u32 = 3;
 /// The exit codes of a pod that another one would repeat: those of `rtf`, and those of a shell that
 /// cannot execute a program.
 pub const FINAL_CODES: [u8; 6] =
-    [exit::FAILED, exit::BAD_INPUT, exit::BROKEN, exit::UNDECIDED, 126, 127];
+    [exit_code::FAILED, exit_code::BAD_INPUT, exit_code::BROKEN, exit_code::UNDECIDED, 126, 127];
 
 /// How long Kubernetes keeps a Job that has ended, in seconds: one day.
 const KEPT_SECS: u32 = 86_400;
@@ -54,7 +54,7 @@ fn failure_rules() -> Value {
     };
     let disrupted = json!([{ "type": "DisruptionTarget", "status": "True" }]);
     json!([
-        codes("FailJob", &[exit::HOOK_FAILED]),
+        codes("FailJob", &[exit_code::HOOK_FAILED]),
         { "action": "Ignore", "onPodConditions": disrupted },
         codes("FailIndex", &FINAL_CODES),
     ])
