@@ -17,6 +17,7 @@ const DEPTH: usize = 8;
 
 /// Finds the tests of all packages that were built.
 pub fn import(workspace: &Path) -> Result<Import, ImportError> {
+    let workspace = &crate::absolute(workspace)?;
     let build = workspace.join("build");
     let mut packages: Vec<PathBuf> = match std::fs::read_dir(&build) {
         Ok(entries) => entries.filter_map(Result::ok).map(|it| it.path()).collect(),

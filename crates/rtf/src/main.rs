@@ -1,34 +1,13 @@
 //! `rtf`, the runner of the Robot Testing Framework.
 //!
-//! [`command`] describes how a verb gets from its arguments, [`cli`], to its exit code,
-//! [`exit`].
+//! [`command`] describes how a verb gets from its arguments, [`cli`], to its exit code.
 
-mod campaign;
 mod cli;
-mod collector;
 mod command;
-mod control;
-mod debug;
-mod diagnostics;
-mod error;
 mod executor;
-mod exit;
-mod guarded;
-mod history;
-mod operator;
-mod origin;
-mod outputs;
-mod plan;
-mod preflight;
-mod reports;
 mod request;
-mod rerun_command;
-mod revision;
-mod runner;
 mod spawn_self;
-mod terminal;
 mod testrunner;
-mod web;
 
 use std::process::ExitCode;
 
@@ -99,5 +78,5 @@ fn run_hook_command() -> ExitCode {
     let program = program.unwrap_or_default();
     let why = start_failure::describe(&program, &error);
     anstream::eprintln!("cannot execute `{program}`: {why}");
-    ExitCode::from(u8::try_from(code).unwrap_or(exit::BROKEN))
+    ExitCode::from(u8::try_from(code).unwrap_or(rtf_model::exit_code::BROKEN))
 }

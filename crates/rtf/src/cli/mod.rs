@@ -29,7 +29,7 @@ pub use campaign::{
 pub use debug::{DebugArgs, RunVerbArgs};
 pub use doctor::{DoctorArgs, DoctorFormat};
 pub use executor::{CampaignTaskArgs, ClusterArgs, ExecutorArgs, ExecutorOption};
-pub use formats::{Annotations, ReportFormat, ReportTarget, StdoutFormat, parse_report};
+pub use formats::{Annotations, StdoutFormat};
 pub use gate::{GateFormat, HistoryGateArgs};
 pub use golden::{GoldenAcceptArgs, GoldenVerb};
 pub use history::{

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rtf_report::merge::Keep;
+use rtf_run::formats::ReportFormat;
 
+use super::ResultsArgs;
 use super::formats::format_parser;
-use super::{ReportFormat, ResultsArgs};
 
 /// Options of `rtf show`.
 #[derive(Debug, Args)]

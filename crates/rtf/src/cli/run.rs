@@ -7,12 +7,11 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 use rtf_plan::suite::parse_duration;
 use rtf_process::fork_server::ForkMode;
+use rtf_run::formats::{ReportFormat, ReportTarget, parse_report};
 
 use super::inputs::SELECTION;
 use super::values::{fork_mode_parser, jobs_parser};
-use super::{
-    Annotations, InputArgs, ReportFormat, ReportTarget, StdoutFormat, WebRunArgs, parse_report,
-};
+use super::{Annotations, InputArgs, StdoutFormat, WebRunArgs};
 
 /// Options of `rtf run` and `rtf watch`.
 #[derive(Debug, Args)]

@@ -4,21 +4,20 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::ArgMatches;
-
 use rtf_plan::plan::TestPlan;
 use rtf_plan::suite::is_campaign_file;
+use rtf_run::diagnostics::count;
+use rtf_run::{campaign, plan, terminal};
 
 use super::VerbResult;
 use crate::cli::InputArgs;
-use crate::diagnostics::count;
-use crate::request::{TestsRequest, config};
-use crate::{campaign, plan, terminal};
+use crate::request::{self, config};
 
 /// Checks a campaign and its suite.
 fn check_campaign(file: &Path, args: &InputArgs) -> VerbResult {
     let loaded = campaign::load(file)?;
     loaded.print_warnings()?;
-    let mut request = TestsRequest::of_suite(&loaded.suite, &args.profile)?;
+    let mut request = request::tests_of_suite(&loaded.suite, &args.profile)?;
     let episodes = loaded.episodes.episodes;
     let count = count(episodes.len(), "episode");
     request.set_episodes(loaded.suite, episodes);
@@ -35,7 +34,7 @@ pub fn run(mut args: InputArgs, matches: &ArgMatches) -> VerbResult {
     {
         return check_campaign(file, &args);
     }
-    let request = TestsRequest::resolve(&args)?;
+    let request = request::tests(&args)?;
     let planned = plan::plan(&request)?;
     planned.print_warnings()?;
     let plan = &planned.plan;

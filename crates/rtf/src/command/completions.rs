@@ -4,10 +4,10 @@ use std::process::ExitCode;
 
 use clap::CommandFactory;
 use clap_complete::Shell;
+use rtf_run::terminal;
 
 use super::VerbResult;
 use crate::cli::Cli;
-use crate::terminal;
 
 /// Prints the completions of a shell.
 pub fn run(shell: Shell) -> VerbResult {

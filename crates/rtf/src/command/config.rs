@@ -10,12 +10,12 @@ use rtf_plan::config::{
 use rtf_plan::plan::RunnerEnvironment;
 use rtf_plan::suite::{self, SharedSettings, SourceText};
 use rtf_report::escape;
+use rtf_run::error::Failure;
+use rtf_run::{diagnostics, history, terminal};
 
 use super::VerbResult;
 use crate::cli::ConfigArgs;
-use crate::error::Failure;
 use crate::request::config::{absolute, request};
-use crate::{diagnostics, history, terminal};
 
 /// The column of comments.
 const COMMENT_COLUMN: usize = 44;

@@ -10,13 +10,14 @@ use clap::ArgMatches;
 use rtf_golden::{MEDIA_TYPE, Reference, by_time, by_warp};
 use rtf_model::{Attachment, Record, TestRecord};
 use rtf_report::{escape, format_count, output_file};
+use rtf_run::error::Failure;
+use rtf_run::request::past_run;
+use rtf_run::terminal;
 
 use super::VerbResult;
 use super::golden_picture::PictureFile;
 use crate::cli::{GoldenAcceptArgs, GoldenVerb};
-use crate::error::Failure;
-use crate::request::{config, past_run};
-use crate::terminal;
+use crate::request::config;
 
 /// The prefix of a required resource that names a robot.
 const ROBOT: &str = "robot:";

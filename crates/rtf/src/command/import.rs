@@ -7,22 +7,22 @@ use std::process::ExitCode;
 
 use rtf_import::{ExistingSuite, Import, ImportError, absolute, from_colcon, from_ctest};
 use rtf_report::escape;
+use rtf_run::error::Failure;
+use rtf_run::terminal;
 
 use super::VerbResult;
 use crate::cli::{ImportOutput, ImportVerb};
-use crate::error::Failure;
-use crate::terminal;
 
 /// Imports tests.
 pub fn run(verb: &ImportVerb) -> VerbResult {
     let (import, output) = match verb {
         ImportVerb::Ctest { build, config, output } => {
             refuse_existing(output)?;
-            (from_ctest(build, config.as_deref())?, output)
+            (from_ctest(build, config.as_deref()).map_err(failure)?, output)
         }
         ImportVerb::Colcon { workspace, output } => {
             refuse_existing(output)?;
-            (from_colcon(&absolute(workspace)?)?, output)
+            (from_colcon(workspace).map_err(failure)?, output)
         }
     };
     write(&import, output)?;
@@ -48,8 +48,8 @@ fn write(import: &Import, output: &ImportOutput) -> Result<(), Failure> {
     }
     let file = &output.output;
     let dir = match file.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => absolute(parent)?,
-        _ => absolute(Path::new("."))?,
+        Some(parent) if !parent.as_os_str().is_empty() => absolute(parent).map_err(failure)?,
+        _ => absolute(Path::new(".")).map_err(failure)?,
     };
     let text = import.suite(&dir);
     let written = match output.force {
@@ -108,9 +108,7 @@ fn existing_suites(suites: &[ExistingSuite]) -> Vec<String> {
     commands.into_iter().map(|(_, command)| command).collect()
 }
 
-impl From<ImportError> for Failure {
-    fn from(mut error: ImportError) -> Self {
-        let hint = error.hint.take();
-        Self::input(error).maybe_hint(hint)
-    }
+fn failure(mut error: ImportError) -> Failure {
+    let hint = error.hint.take();
+    Failure::input(error).maybe_hint(hint)
 }

@@ -8,18 +8,18 @@ use clap::ArgMatches;
 use rtf_model::{ExpectedFailure, FindingSeverity, MonitorConfig, Parameter};
 use rtf_plan::plan::{ListedCase, Plan, SuitePlan, TestPlan};
 use rtf_report::escape;
+use rtf_run::plan::{self, Planned};
+use rtf_run::terminal;
 use serde::Serialize;
 
 use super::VerbResult;
 use crate::cli::{ListArgs, ListFormat};
-use crate::plan::{self, Planned};
-use crate::request::{TestsRequest, config};
-use crate::terminal;
+use crate::request::{self, config};
 
 /// Lists tests.
 pub fn run(mut args: ListArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_results(&mut args.input, matches)?;
-    let request = TestsRequest::resolve(&args.input)?;
+    let request = request::tests(&args.input)?;
     let planned = plan::plan(&request)?;
     print(&planned, args.format, args.monitors)
 }

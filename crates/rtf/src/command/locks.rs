@@ -5,11 +5,12 @@ use std::time::{Duration, Instant};
 
 use rtf_engine::locks::{HeldLock, Locks};
 use rtf_report::escape;
+use rtf_run::error::Failure;
+use rtf_run::{exit, terminal};
 
 use super::VerbResult;
 use crate::cli::LocksArgs;
-use crate::error::Failure;
-use crate::{exit, request, terminal};
+use crate::request;
 
 /// How often the locks are polled.
 const INTERVAL: Duration = Duration::from_millis(50);

@@ -4,10 +4,10 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::CommandFactory;
+use rtf_run::error::Failure;
 
 use super::VerbResult;
 use crate::cli::Cli;
-use crate::error::Failure;
 
 /// Writes `rtf.1` and one page for each verb.
 pub fn run(dir: &Path) -> VerbResult {

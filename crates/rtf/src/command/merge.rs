@@ -18,13 +18,14 @@ use rtf_report::merge::{
 };
 use rtf_report::run_dir::{self, RunDir};
 use rtf_report::{ReportError, Reporter};
+use rtf_run::error::Failure;
+use rtf_run::outputs::console_options;
+use rtf_run::request::past_run;
+use rtf_run::{exit, history, terminal};
 
 use super::VerbResult;
 use crate::cli::MergeArgs;
-use crate::error::Failure;
-use crate::outputs::console_options;
-use crate::request::{config, past_run};
-use crate::{exit, history, terminal};
+use crate::request::config;
 
 /// Merges runs and prints the merged run.
 pub fn run(mut args: MergeArgs, matches: &ArgMatches) -> VerbResult {

@@ -9,12 +9,10 @@
 //!               └► web server ─► rtf run --rerun                rtf serve
 //! ```
 //!
-//! Values go from left to right only: a stage reads the results of earlier stages and
-//! calls no earlier stage. Only [`crate::request`] fills in arguments from `rtf.toml` and
-//! past runs. [`crate::guarded`] forks before the request is resolved, so that the guard
-//! stays small; the stages from there on are those of the runner process.
-//! [`crate::testrunner`] goes the same way for the command line of
-//! robot-testing-framework 2.x, with another request.
+//! Values go from left to right only. [`crate::request`] makes requests, which are plain data, from
+//! arguments, `rtf.toml` and past runs; [`rtf_run`] does the rest for all verbs that run tests.
+//! [`crate::testrunner`] goes the same way for the command line of robot-testing-framework 2.x, with
+//! another request.
 
 pub mod campaign;
 pub mod check;
@@ -38,9 +36,4 @@ pub mod serve;
 pub mod show;
 pub mod watch;
 
-use std::process::ExitCode;
-
-use crate::error::Failure;
-
-/// The exit code of a verb, or an error to print.
-pub type VerbResult = Result<ExitCode, Failure>;
+pub use rtf_run::VerbResult;

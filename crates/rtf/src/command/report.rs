@@ -7,12 +7,14 @@ use std::process::ExitCode;
 use clap::ArgMatches;
 use rtf_report::journal::{self, JournalError};
 use rtf_report::{ReportError, output_file};
+use rtf_run::error::Failure;
+use rtf_run::formats::ReportFormat;
+use rtf_run::request::past_run;
+use rtf_run::{exit, reports, terminal};
 
 use super::VerbResult;
-use crate::cli::{ReportArgs, ReportFormat};
-use crate::error::Failure;
-use crate::request::{config, past_run};
-use crate::{exit, reports, terminal};
+use crate::cli::ReportArgs;
+use crate::request::config;
 
 /// Writes a report. The exit code is about the report, not about the run; it is 1 for
 /// a damaged journal, whose report is incomplete.

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use rtf_plan::plan::{self, RunnerEnvironment};
+use rtf_run::error::Failure;
+use rtf_run::terminal;
 
 use super::VerbResult;
-use crate::error::Failure;
-use crate::terminal;
 
 /// Prints the directory of the CMake packages.
 pub fn cmake() -> VerbResult {

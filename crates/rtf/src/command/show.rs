@@ -6,13 +6,14 @@ use clap::ArgMatches;
 use rtf_model::{Record, TestRecord};
 use rtf_report::console::{Console, ConsoleOptions};
 use rtf_report::{journal, text};
+use rtf_run::error::Failure;
+use rtf_run::outputs::console_options;
+use rtf_run::request::past_run;
+use rtf_run::{exit, terminal};
 
 use super::VerbResult;
 use crate::cli::ShowArgs;
-use crate::error::Failure;
-use crate::outputs::console_options;
-use crate::request::{config, past_run};
-use crate::{exit, terminal};
+use crate::request::config;
 
 /// How many tests are listed if there is no test of the given name.
 const NAMES: usize = 10;

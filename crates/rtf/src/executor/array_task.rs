@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use rtf_plan::select::{Shard, ShardBy};
+use rtf_run::error::Failure;
+use rtf_run::history;
 
 use super::stop::CANCELLED;
 use crate::cli::{Annotations, ClusterArgs, RunArgs};
-use crate::error::Failure;
-use crate::history;
 
 /// A task of a submission: `3:0:/shared/submission`.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -7,13 +7,13 @@ use rtf_model::RunState;
 use rtf_report::journal;
 use rtf_report::merge::MergeOptions;
 use rtf_report::run_dir::{self, JOURNAL, RunDir};
+use rtf_run::error::Failure;
+use rtf_run::{exit, outputs, terminal};
 
 use super::submission::Submission;
 use crate::cli::RunArgs;
 use crate::command::{VerbResult, merge};
-use crate::error::Failure;
-use crate::request::{self, OutputRequest, history_target};
-use crate::{exit, history, outputs, terminal};
+use crate::request;
 
 /// The last attempt of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,12 +100,7 @@ fn finish(args: &RunArgs, dir: &RunDir) -> Result<(), Failure> {
     // The record of `merge` has no details.
     let stored = journal::read(&dir.journal()).map_err(Failure::internal)?;
     let record = &stored.record;
-    outputs::complete(&OutputRequest::resolve(args), &dir.journal(), record);
-    if let Some(history) = history_target(args)? {
-        history::import_run(&history, record);
-    }
-    for collector in request::collectors(args)? {
-        collector.push(record);
-    }
+    outputs::complete(&request::output(args), &dir.journal(), record);
+    request::finish(args, false)?.finish(record);
     Ok(())
 }

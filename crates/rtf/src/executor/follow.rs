@@ -2,14 +2,14 @@
 
 use std::time::{Duration, Instant};
 
+use rtf_cluster::{ClusterError, Job};
 use rtf_engine::signal::SignalListener;
+use rtf_run::error::Failure;
+use rtf_run::terminal;
 
 use super::progress::Progress;
 use super::stop::Stop;
 use super::submission::Submission;
-use crate::error::Failure;
-use crate::terminal;
-use rtf_cluster::{ClusterError, Job};
 
 /// How often the scheduler is asked for the tasks, at most.
 const POLL_INTERVAL: Duration = Duration::from_secs(2);

@@ -23,16 +23,14 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::FromArgMatches;
+use rtf_plan::plan::Plan;
+use rtf_plan::select::{Shard, ShardBy};
+use rtf_run::error::Failure;
+use rtf_run::{plan, reports, terminal};
 
 use crate::cli::{self, RunArgs, RunVerbArgs, StdoutFormat};
 use crate::command::VerbResult;
-use crate::error::Failure;
-use crate::plan;
-use crate::reports;
-use crate::request::{OutputRequest, TestsRequest, config};
-use crate::terminal;
-use rtf_plan::plan::Plan;
-use rtf_plan::select::{Shard, ShardBy};
+use crate::request::{self, config};
 
 pub use array_task::{ArrayTask, last_attempt};
 pub use options::{cluster, refuse_unused, shards};
@@ -47,7 +45,7 @@ pub fn run(args: &RunVerbArgs) -> VerbResult {
     refuse_options(args)?;
     let shards = shards(&args.executor.cluster)?;
     // Reports are written at the end, but unusable paths are reported now.
-    let output = OutputRequest::resolve(&args.run);
+    let output = request::output(&args.run);
     drop(reports::open_all(&output.reports, &output.results)?);
     let (tasks, plan) = plan_all(&args.run, shards)?;
     let results = &args.run.input.results.results;
@@ -88,7 +86,7 @@ pub fn print_manifest(cluster: &Cluster, array: &JobArray<'_>) -> Result<(), Fai
 /// Plans all tests; returns the numbers of the shards that contain any.
 fn plan_all(args: &RunArgs, shards: u32) -> Result<(Vec<u32>, Plan), Failure> {
     let shard = Shard { index: 1, count: shards, by: ShardBy::Hash };
-    let mut request = TestsRequest::resolve_shard(&args.input, Some(shard))?;
+    let mut request = request::tests_in_shard(&args.input, Some(shard))?;
     let shard = request.shard.take();
     let planned = plan::plan(&request)?;
     planned.print_warnings()?;

@@ -3,15 +3,15 @@
 use std::path::Path;
 use std::time::Duration;
 
+use rtf_cluster::Cluster;
+use rtf_cluster::kubernetes::Kubernetes;
+use rtf_cluster::slurm::Slurm;
 use rtf_plan::plan::Plan;
+use rtf_run::error::Failure;
 
 use super::stop::STOP_GRACE;
 use super::submission::text;
 use crate::cli::{ClusterArgs, ExecutorOption};
-use crate::error::Failure;
-use rtf_cluster::Cluster;
-use rtf_cluster::kubernetes::Kubernetes;
-use rtf_cluster::slurm::Slurm;
 
 /// The domain of extended resources of Kubernetes.
 const RESOURCE_DOMAIN: &str = "rtf";

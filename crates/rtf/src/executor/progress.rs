@@ -5,15 +5,15 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
+use rtf_cluster::{Job, JobState};
 use rtf_model::EventKind;
 use rtf_report::journal;
 use rtf_report::run_dir::JOURNAL;
+use rtf_run::diagnostics::count;
+use rtf_run::terminal;
 
 use super::submission::Submission;
 use super::task_progress::TaskProgress;
-use crate::diagnostics::count;
-use crate::terminal;
-use rtf_cluster::{Job, JobState};
 
 /// Prints the progress when it has changed.
 pub struct Progress<'a> {

@@ -5,10 +5,9 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use rtf_engine::guard::StopRequests;
-
-use crate::terminal;
 use rtf_cluster::{ClusterError, Job, TaskState};
+use rtf_engine::guard::StopRequests;
+use rtf_run::terminal;
 
 /// The file that exists when the user has cancelled the tasks.
 pub const CANCELLED: &str = "cancelled";

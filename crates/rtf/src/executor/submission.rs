@@ -5,13 +5,13 @@ use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
+use rtf_cluster::Cluster;
 use rtf_plan::plan::Plan;
+use rtf_run::error::Failure;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
 use super::last_attempt;
-use crate::error::Failure;
-use rtf_cluster::Cluster;
 
 /// The directory of all submissions in a results directory: hidden, so that `rtf-results/*` names
 /// runs only.

@@ -2,11 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use rtf_report::escape;
-
-use crate::diagnostics::count;
-use crate::terminal;
 use rtf_cluster::{Job, JobState};
+use rtf_report::escape;
+use rtf_run::diagnostics::count;
+use rtf_run::terminal;
 
 /// Prints the state of the tasks when it has changed.
 pub struct TaskProgress {

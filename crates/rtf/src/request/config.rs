@@ -7,13 +7,14 @@ use clap::parser::ValueSource;
 use clap::{ArgMatches, ValueEnum};
 use rtf_plan::config::{self, ConfigFiles, ConfigRequest, RunConfig, RunValue};
 use rtf_plan::suite::parse_duration;
+use rtf_run::diagnostics;
+use rtf_run::error::Failure;
+use rtf_run::formats::{ReportFormat, ReportTarget, parse_report};
 
 use crate::cli::{
     Annotations, CampaignRunArgs, FlakyResult, HistoryFileArgs, InputArgs, OrderOption,
-    ProfileArgs, ReportFormat, ReportTarget, ResultsArgs, RunArgs, parse_fork_mode, parse_report,
+    ProfileArgs, ResultsArgs, RunArgs, parse_fork_mode,
 };
-use crate::diagnostics;
-use crate::error::Failure;
 
 /// The profile and the parameters to use.
 pub fn request(args: &ProfileArgs) -> ConfigRequest {

@@ -2,132 +2,72 @@
 
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use clap::ValueEnum;
-use rtf_model::{
-    Diagnostic, Episode, Manifest, Parameter, Record, Significance, TestRecord, Verdict,
-};
+use rtf_model::{Manifest, Record, Significance, TestRecord, Verdict};
 use rtf_plan::config::ConfigRequest;
 use rtf_plan::plan::{InputPath, Options, RunnerEnvironment};
 use rtf_plan::select::{Shard, TestOrder};
-use rtf_plan::suite::episode_reference;
 use rtf_report::local_time;
+use rtf_run::error::Failure;
+use rtf_run::request::{PastQuery, TestsRequest, failed_cases, past_run};
 
-use super::past_tests::PastQuery;
-use super::{failed_cases, past_run};
-use crate::campaign::EpisodeStream;
 use crate::cli::{FlakyResult, InputArgs, OrderOption, ProfileArgs, RepeatArgs, RerunVerdict};
-use crate::error::Failure;
-use crate::history::PastTests;
 
-/// The tests of a run.
-pub struct TestsRequest {
-    pub inputs: Vec<InputPath>,
-    /// The options of planning, with the directory that the inputs are relative to.
-    pub options: Options,
-    /// The request as the run's first event records it; it also has the filters, the
-    /// order and the repetitions.
-    pub manifest: Manifest,
-    /// The order by past results.
-    pub order: Option<(TestOrder, Arc<PastTests>)>,
-    /// The part of the selected tests to run, and the past results from which it is computed.
-    pub shard: Option<(Shard, Option<Arc<PastTests>>)>,
-    /// The episodes of a campaign to run; empty without a campaign.
-    pub episodes: Vec<Episode>,
-    /// Further episodes, which arrive while the suite runs.
-    pub episode_stream: Option<EpisodeStream>,
-    /// Problems that prevent nothing.
-    pub warnings: Vec<Diagnostic>,
+/// Resolves the arguments, and reads the past runs that they name.
+pub fn tests(args: &InputArgs) -> Result<TestsRequest, Failure> {
+    tests_in_shard(args, args.select.shard.clone())
 }
 
-impl TestsRequest {
-    /// Resolves the arguments, and reads the past runs that they name.
-    pub fn resolve(args: &InputArgs) -> Result<Self, Failure> {
-        Self::resolve_shard(args, args.select.shard.clone())
+/// As [`tests`], for a shard that is not in the arguments.
+pub fn tests_in_shard(args: &InputArgs, shard: Option<Shard>) -> Result<TestsRequest, Failure> {
+    let mut runner = RunnerEnvironment::from_current_process().map_err(Failure::internal)?;
+    let results = &args.results.results;
+    let mut manifest = if args.select.rerun.is_empty() {
+        manifest(args)?
+    } else {
+        let (manifest, working_dir) = rerun_manifest(args, results)?;
+        runner.current_dir = working_dir;
+        manifest
+    };
+    manifest.filters.clone_from(&args.select.filters);
+    if let Some(seed) = args.select.shuffle {
+        manifest.shuffle = Some(seed.unwrap_or_else(random_seed));
+        manifest.order = None;
     }
-
-    /// As [`Self::resolve`], for a shard that is not in the arguments.
-    pub fn resolve_shard(args: &InputArgs, shard: Option<Shard>) -> Result<Self, Failure> {
-        let mut runner = RunnerEnvironment::from_current_process().map_err(Failure::internal)?;
-        let results = &args.results.results;
-        let mut manifest = if args.select.rerun.is_empty() {
-            manifest(args)?
-        } else {
-            let (manifest, working_dir) = rerun_manifest(args, results)?;
-            runner.current_dir = working_dir;
-            manifest
-        };
-        manifest.filters.clone_from(&args.select.filters);
-        if let Some(seed) = args.select.shuffle {
-            manifest.shuffle = Some(seed.unwrap_or_else(random_seed));
-            manifest.order = None;
-        }
-        set_repetition(&mut manifest, &args.repeat);
-        if let Some(order) = args.select.order {
-            manifest.order = order.by_history().map(|(_, name)| name.to_owned());
-            manifest.shuffle = None;
-        }
-        let order = manifest.order.as_deref().filter(|_| manifest.shuffle.is_none());
-        let order = order.and_then(|name| OrderOption::from_str(name, false).ok()?.by_history());
-        let past = PastQuery { args, manifest: &manifest, dir: &runner.current_dir };
-        let mut warnings = Vec::new();
-        let order = order.map(|(order, _)| past.order(order, &mut warnings)).transpose()?.flatten();
-        let shard = shard.map(|shard| past.assign(shard)).transpose()?;
-        manifest.shard = shard.as_ref().map(|(it, _)| format!("{}/{}", it.index, it.count));
-        let inputs = manifest.inputs.iter().map(|input| InputPath::Any(input.into())).collect();
-        let options = options(&manifest, runner);
-        Ok(Self {
-            inputs,
-            options,
-            manifest,
-            order,
-            shard,
-            episodes: Vec::new(),
-            episode_stream: None,
-            warnings,
-        })
+    set_repetition(&mut manifest, &args.repeat);
+    if let Some(order) = args.select.order {
+        manifest.order = order.by_history().map(|(_, name)| name.to_owned());
+        manifest.shuffle = None;
     }
-
-    /// Runs a suite once for each episode. Its parameters are references, which are replaced when
-    /// a process starts.
-    pub fn set_episodes(&mut self, suite: PathBuf, episodes: Vec<Episode>) {
-        let parameters = episodes.first().map_or(&[][..], |first| &first.parameters);
-        for Parameter { name, value } in parameters {
-            let reference = episode_reference::to(name);
-            self.options.config_request.params.push((name.clone(), reference));
-            // `--rerun` repeats a single episode as an ordinary run.
-            if episodes.len() == 1 && self.episode_stream.is_none() {
-                self.manifest.set.push(format!("{name}={value}"));
-            }
-        }
-        self.manifest.inputs = vec![suite.to_string_lossy().into_owned()];
-        self.inputs = vec![InputPath::Suite(suite)];
-        self.episodes = episodes;
-    }
+    let order = manifest.order.as_deref().filter(|_| manifest.shuffle.is_none());
+    let order = order.and_then(|name| OrderOption::from_str(name, false).ok()?.by_history());
+    let past = PastQuery {
+        history: args.history.history.as_deref(),
+        results,
+        manifest: &manifest,
+        dir: &runner.current_dir,
+    };
+    let mut warnings = Vec::new();
+    let order = order.map(|(order, _)| past.order(order, &mut warnings)).transpose()?.flatten();
+    let shard = shard.map(|shard| past.assign(shard, &args.select.shard_by)).transpose()?;
+    manifest.shard = shard.as_ref().map(|(it, _)| format!("{}/{}", it.index, it.count));
+    let inputs = manifest.inputs.iter().map(|input| InputPath::Any(input.into())).collect();
+    let options = options(&manifest, runner);
+    Ok(TestsRequest { order, shard, warnings, ..TestsRequest::new(inputs, options, manifest) })
 }
 
-impl TestsRequest {
-    /// All tests of a suite.
-    pub fn of_suite(suite: &Path, profile: &ProfileArgs) -> Result<Self, Failure> {
-        let runner = RunnerEnvironment::from_current_process().map_err(Failure::internal)?;
-        let manifest = Manifest {
-            inputs: vec![suite.to_string_lossy().into_owned()],
-            profile: profile.profile.clone(),
-            set: settings(profile),
-            ..Manifest::default()
-        };
-        Ok(Self {
-            inputs: vec![InputPath::Suite(suite.to_owned())],
-            options: options(&manifest, runner),
-            manifest,
-            order: None,
-            shard: None,
-            episodes: Vec::new(),
-            episode_stream: None,
-            warnings: Vec::new(),
-        })
-    }
+/// All tests of a suite.
+pub fn tests_of_suite(suite: &Path, profile: &ProfileArgs) -> Result<TestsRequest, Failure> {
+    let runner = RunnerEnvironment::from_current_process().map_err(Failure::internal)?;
+    let manifest = Manifest {
+        inputs: vec![suite.to_string_lossy().into_owned()],
+        profile: profile.profile.clone(),
+        set: settings(profile),
+        ..Manifest::default()
+    };
+    let options = options(&manifest, runner);
+    Ok(TestsRequest::new(vec![InputPath::Suite(suite.to_owned())], options, manifest))
 }
 
 fn manifest(args: &InputArgs) -> Result<Manifest, Failure> {
@@ -204,7 +144,7 @@ fn tests_to_rerun(
             continue;
         }
         let Some((suite, test_name)) = past_run::names(record, test) else { continue };
-        if let Some(paths) = failed_cases::of_test(test) {
+        if let Some(paths) = failed_cases(test) {
             cases.push((suite.clone(), test_name.clone(), paths));
         }
         names.push((suite, test_name));
@@ -262,5 +202,16 @@ fn options(manifest: &Manifest, runner: RunnerEnvironment) -> Options {
         repetitions: manifest.repetition.unwrap_or(1),
         config_request: ConfigRequest { profile: manifest.profile.clone(), params },
         ..Options::new(runner, local_time::now().date())
+    }
+}
+
+impl OrderOption {
+    /// The order and its name in the manifest; `None` for that of the files.
+    fn by_history(self) -> Option<(TestOrder, &'static str)> {
+        match self {
+            Self::File => None,
+            Self::FailedFirst => Some((TestOrder::FailedFirst, "failed-first")),
+            Self::SlowestFirst => Some((TestOrder::SlowestFirst, "slowest-first")),
+        }
     }
 }

@@ -2,129 +2,112 @@
 //! past runs filled in. Everything after this stage reads the request only.
 
 pub mod config;
-mod failed_cases;
 mod inputs;
-pub mod past_run;
-mod past_tests;
 
-use std::num::NonZeroU16;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use rtf_engine::locks::{self, LockOptions};
-use rtf_process::fork_server::ForkMode;
+use rtf_plan::plan::CaseListing;
+use rtf_run::campaign::{self, EpisodeStream};
+use rtf_run::collector::Collector;
+use rtf_run::debug::DebugRequest;
+use rtf_run::error::Failure;
+use rtf_run::finish::Finish;
+use rtf_run::formats::{self, OutputFormat, ReportFormat, ReportTarget};
+use rtf_run::history::{self, HistoryTarget};
+use rtf_run::operator::Attendance;
+use rtf_run::request::{OutputRequest, RunRequest, TestsRequest, WebRequest};
+use rtf_run::revision::RevisionQuery;
 use rtf_web::{Limits, Settings};
 
-use crate::campaign::{self, EpisodeStream};
-use crate::cli::{Annotations, ReportFormat, ReportTarget, RunArgs, StdoutFormat, WebAccessArgs};
-use crate::collector::Collector;
-use crate::debug::DebugRequest;
-use crate::error::Failure;
-use crate::history::{self, HistoryTarget};
-use crate::operator::Attendance;
-use crate::revision::RevisionQuery;
-use rtf_plan::plan::CaseListing;
+use crate::cli::{
+    Annotations, DebugArgs, HistoryFileArgs, ResultsArgs, RunArgs, StdoutFormat, WebAccessArgs,
+};
 
-pub use inputs::TestsRequest;
+pub use inputs::{tests, tests_in_shard, tests_of_suite};
 
-/// A run.
-pub struct RunRequest {
-    pub tests: TestsRequest,
-    pub results: PathBuf,
-    /// How to choose another results directory, for hints.
-    pub results_option: &'static str,
-    /// A further symbolic link to the directory of the run.
-    pub symlink: Option<PathBuf>,
-    pub web: Option<WebRequest>,
-    pub fork_mode: ForkMode,
-    /// The number of failed tests after which the remaining tests are skipped.
-    pub max_fail: Option<u32>,
-    pub locks: LockOptions,
-    pub jobs: NonZeroU16,
-    /// How long the run may take to end after a signal or a request to stop.
-    pub shutdown_timeout: Duration,
-    /// How the only test is debugged.
-    pub debug: Option<DebugRequest>,
-    /// Who can answer questions of tests.
-    pub attendance: Attendance,
-    /// Where the run is imported when it has ended.
-    pub history: Option<HistoryTarget>,
-    /// Which collectors get the trace of the run when it has ended.
-    pub collectors: Vec<Collector>,
-    /// The revision of the sources, which Git finds out during the planning.
-    pub revision: RevisionQuery,
-}
-
-/// What `rtf run` prints, and the reports that it writes.
-pub struct OutputRequest {
-    pub format: StdoutFormat,
-    pub verbose: bool,
-    /// Never [`Annotations::Auto`].
-    pub annotations: Annotations,
-    pub reports: Vec<(ReportFormat, PathBuf)>,
-    /// The results directory.
-    pub results: PathBuf,
-    /// Whether a progress bar may be shown.
-    pub progress: bool,
-}
-
-/// The web server of a run.
-pub struct WebRequest {
-    pub settings: Settings,
-    /// How to choose another address, for hints.
-    pub hint: Option<&'static str>,
-    pub linger: Option<Duration>,
-}
-
-impl OutputRequest {
-    /// Resolves the arguments of `rtf run`, in which [`config`] has been filled in.
-    pub fn resolve(args: &RunArgs) -> Self {
-        Self {
-            format: args.format,
-            verbose: args.verbose,
-            annotations: detect_host(args.annotations),
-            reports: args.reports.iter().filter_map(report_file).collect(),
-            results: args.input.results.results.clone(),
-            progress: true,
-        }
+/// What `rtf run` prints and writes.
+pub fn output(args: &RunArgs) -> OutputRequest {
+    OutputRequest {
+        format: match args.format {
+            StdoutFormat::Console => OutputFormat::Console,
+            StdoutFormat::Json => OutputFormat::Json,
+            StdoutFormat::Tap => OutputFormat::Tap,
+        },
+        verbose: args.verbose,
+        annotations: annotations(args.annotations),
+        reports: args.reports.iter().filter_map(report_file).collect(),
+        results: args.input.results.results.clone(),
+        progress: true,
     }
 }
 
-impl RunRequest {
-    /// Resolves the arguments of `rtf run`, in which [`config`] has been filled in.
-    pub fn resolve(args: &RunArgs) -> Result<Self, Failure> {
-        if let Some(option) = args.web.option_without_effect() {
-            let error = format!("`{option}` has no effect without `--web`");
-            return Err(Failure::input(error).hint("add `--web`"));
-        }
-        let mut tests = TestsRequest::resolve(&args.input)?;
-        if tests.manifest.filters.is_empty() && !args.dry_run {
-            tests.options.case_listing = CaseListing::IfNeeded;
-        }
-        set_episodes(&mut tests, args)?;
-        let revision = RevisionQuery::start(&tests.options.runner.current_dir);
-        Ok(Self {
-            tests,
-            results: args.input.results.results.clone(),
-            results_option: "`--results DIR`",
-            symlink: args.symlink.clone(),
-            web: args.web.web.map(|address| WebRequest {
-                settings: web_settings(address, &args.web.access),
-                hint: None,
-                linger: args.web.web_linger,
-            }),
-            fork_mode: args.fork,
-            max_fail: args.input.repeat.max_fail(),
-            locks: LockOptions { dir: locks_dir(), limit: args.lock_timeout },
-            jobs: args.jobs,
-            shutdown_timeout: args.shutdown_timeout,
-            debug: None,
-            attendance: Attendance::find(args),
-            history: history_target(args)?,
-            collectors: collectors(args)?,
-            revision,
-        })
+/// A run, from arguments in which [`config`] has been filled in.
+pub fn run(args: &RunArgs) -> Result<RunRequest, Failure> {
+    if let Some(option) = args.web.option_without_effect() {
+        let error = format!("`{option}` has no effect without `--web`");
+        return Err(Failure::input(error).hint("add `--web`"));
     }
+    let mut tests = tests(&args.input)?;
+    if tests.manifest.filters.is_empty() && !args.dry_run {
+        tests.options.case_listing = CaseListing::IfNeeded;
+    }
+    set_episodes(&mut tests, args)?;
+    let revision = RevisionQuery::start(&tests.options.runner.current_dir);
+    Ok(RunRequest {
+        tests,
+        results: args.input.results.results.clone(),
+        results_option: "`--results DIR`",
+        symlink: args.symlink.clone(),
+        web: args.web.web.map(|address| WebRequest {
+            settings: web_settings(address, &args.web.access),
+            hint: None,
+            linger: args.web.web_linger,
+        }),
+        fork_mode: args.fork,
+        max_fail: args.input.repeat.max_fail(),
+        locks: LockOptions { dir: locks_dir(), limit: args.lock_timeout },
+        jobs: args.jobs,
+        shutdown_timeout: args.shutdown_timeout,
+        debug: None,
+        attendance: attendance(args),
+        database: history::resolve(
+            args.input.history.history.as_deref(),
+            &args.input.results.results,
+        )?,
+        revision,
+    })
+}
+
+/// How the only test is debugged; `None` if none is.
+pub fn debug(args: &DebugArgs, run: &RunArgs) -> Result<Option<DebugRequest>, Failure> {
+    if args.debug_wait {
+        return Ok(Some(DebugRequest::waiting()));
+    }
+    if args.debugger.is_none() && !args.debug {
+        return Ok(None);
+    }
+    if run.format != StdoutFormat::Console {
+        let error = "the test's output would be mixed with that of `--format`";
+        return Err(Failure::input(error).hint("leave `--format` out"));
+    }
+    DebugRequest::in_terminal(args.debugger.as_deref()).map(Some)
+}
+
+/// Who can answer the questions of tests.
+fn attendance(args: &RunArgs) -> Attendance {
+    if args.no_input {
+        return Attendance::on_page(false, "`--no-input` is set");
+    }
+    let reads_episodes = args.episodes.as_deref() == Some("-".as_ref());
+    let obstacle = if args.format != StdoutFormat::Console {
+        Some("standard output has another format")
+    } else if args.end_with_stdin || reads_episodes {
+        Some("standard input has another use")
+    } else {
+        None
+    };
+    Attendance::find(args.web.web.is_some(), obstacle)
 }
 
 /// The episodes of a campaign that `args` select.
@@ -160,28 +143,40 @@ fn report_file((format, target): &(ReportFormat, ReportTarget)) -> Option<(Repor
     }
 }
 
-/// Which collectors get the trace of a run when it has ended.
-pub fn collectors(args: &RunArgs) -> Result<Vec<Collector>, Failure> {
+/// Where the results of a run go. A session with a debugger says nothing about the test.
+pub fn finish(args: &RunArgs, is_debugged: bool) -> Result<Finish, Failure> {
     let addresses = args.reports.iter().filter_map(|(_, target)| match target {
         ReportTarget::File(_) => None,
         ReportTarget::Collector(address) => Some(address),
     });
-    addresses.map(|address| Collector::resolve(address)).collect()
+    let no_history = args.no_history || is_debugged;
+    Ok(Finish {
+        history: target(no_history, &args.input.history, &args.input.results)?,
+        collectors: addresses
+            .map(|address| Collector::resolve(address))
+            .collect::<Result<_, _>>()?,
+    })
 }
 
-/// Where a run is imported when it has ended.
-pub fn history_target(args: &RunArgs) -> Result<Option<HistoryTarget>, Failure> {
-    history::target(args.no_history, &args.input.history, &args.input.results)
+/// Where runs and campaigns are imported; `None`: they are not.
+pub fn target(
+    no_history: bool,
+    history: &HistoryFileArgs,
+    results: &ResultsArgs,
+) -> Result<Option<HistoryTarget>, Failure> {
+    let resolve = || HistoryTarget::resolve(history.history.as_deref(), &results.results);
+    (!no_history).then(resolve).transpose()
 }
 
-/// Resolves [`Annotations::Auto`].
-fn detect_host(annotations: Annotations) -> Annotations {
+/// The code host for which annotations are printed, which may be found in the environment.
+fn annotations(option: Annotations) -> formats::Annotations {
     let is_true = |name: &str| std::env::var_os(name).is_some_and(|value| value == "true");
-    match annotations {
-        Annotations::Auto if is_true("GITHUB_ACTIONS") => Annotations::Github,
-        Annotations::Auto if is_true("GITLAB_CI") => Annotations::Gitlab,
-        Annotations::Auto => Annotations::None,
-        other => other,
+    match option {
+        Annotations::Github => formats::Annotations::Github,
+        Annotations::Gitlab => formats::Annotations::Gitlab,
+        Annotations::Auto if is_true("GITHUB_ACTIONS") => formats::Annotations::Github,
+        Annotations::Auto if is_true("GITLAB_CI") => formats::Annotations::Gitlab,
+        Annotations::Auto | Annotations::None => formats::Annotations::None,
     }
 }
 

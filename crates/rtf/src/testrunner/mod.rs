@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
+use args::{Args, OutputType};
 use clap::Parser as _;
 use clap::error::ErrorKind;
 use rtf_engine::locks::LockOptions;
@@ -20,16 +21,18 @@ use rtf_process::fork_server::ForkMode;
 use rtf_report::predecessor::{self, ResultList, ResultListOptions};
 use rtf_report::run_dir::JOURNAL;
 use rtf_report::{ReportError, ReportFile, local_time};
+use rtf_run::error::Failure;
+use rtf_run::finish::Finish;
+use rtf_run::formats::ReportFormat;
+use rtf_run::guarded::{self, Supervision};
+use rtf_run::operator::Attendance;
+use rtf_run::request::{RunRequest, TestsRequest, WebRequest};
+use rtf_run::revision::RevisionQuery;
+use rtf_run::{exit, history, plan, preflight, reports, run, terminal};
 
-use crate::cli::{ReportFormat, WebAccessArgs};
+use crate::cli::WebAccessArgs;
 use crate::command::VerbResult;
-use crate::error::Failure;
-use crate::guarded::{self, Supervision};
-use crate::operator::Attendance;
-use crate::request::{RunRequest, TestsRequest, WebRequest, locks_dir, web_settings};
-use crate::revision::RevisionQuery;
-use crate::{exit, plan, preflight, reports, runner, terminal};
-use args::{Args, OutputType};
+use crate::request::{locks_dir, web_settings};
 
 /// The program's name.
 pub const NAME: &str = "robottestingframework-testrunner";
@@ -104,7 +107,7 @@ fn run(args: &Args) -> VerbResult {
             preflight::prepare(&request, report.into_iter().collect(), |_, stdout, _| {
                 Ok(vec![Box::new(ResultList::over(stdout, console_options(args)))])
             })?;
-        runner::run(&request, &planned, prepared, guard)
+        run::run(&request, &planned, prepared, guard, &Finish::default())
     };
     let outcome = guarded::run(supervision, run, |_, record| complete(args, &results.path, record));
     // The guard needs the journal until the runner has ended.
@@ -128,16 +131,7 @@ fn request(args: &Args, results: &Path) -> Result<RunRequest, Failure> {
     let address = SocketAddr::from((Ipv4Addr::LOCALHOST, args.web_port));
     let revision = RevisionQuery::start(&options.runner.current_dir);
     Ok(RunRequest {
-        tests: TestsRequest {
-            inputs: args.inputs(),
-            options,
-            manifest: Manifest::default(),
-            order: None,
-            shard: None,
-            episodes: Vec::new(),
-            episode_stream: None,
-            warnings: Vec::new(),
-        },
+        tests: TestsRequest::new(args.inputs(), options, Manifest::default()),
         results: results.to_owned(),
         results_option: "the variable `RTF_RESULTS`",
         symlink: None,
@@ -153,8 +147,7 @@ fn request(args: &Args, results: &Path) -> Result<RunRequest, Failure> {
         shutdown_timeout: SHUTDOWN_TIMEOUT,
         debug: None,
         attendance: Attendance::on_page(args.web_reporter, "there is no page"),
-        history: None,
-        collectors: Vec::new(),
+        database: history::default_database(results).into(),
         revision,
     })
 }

@@ -6,8 +6,7 @@ use std::io::{self, Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use rtf_report::episode_results::{EPISODE_RESULTS, EpisodeLine};
-
-use crate::campaign::directory::{self, CampaignDir};
+use rtf_run::campaign::directory::{self, CampaignDir};
 
 /// The episodes of a worker.
 #[derive(Debug)]
@@ -96,8 +95,16 @@ fn read_new(path: &Path, offset: &mut u64, lines: &mut Vec<EpisodeLine>) -> io::
 mod tests {
     use std::fs;
 
+    use rtf_run::campaign::directory::Description;
+
     use super::*;
-    use crate::campaign::directory::tests::campaign_dir;
+
+    fn campaign_dir() -> (tempfile::TempDir, CampaignDir) {
+        let parent = tempfile::tempdir().expect("a directory");
+        let description = Description { name: "grasp".to_owned(), ..Description::default() };
+        let dir = CampaignDir::create(parent.path(), description, None).expect("a campaign");
+        (parent, dir)
+    }
 
     const STARTS: &str = "{\"episode\":1}\n";
 

@@ -9,12 +9,12 @@ use rtf_campaign::comparison::{Comparison, EpisodeValues, MeasurementComparison,
 use rtf_campaign::{EpisodeList, EpisodeResult, Ledger};
 use rtf_report::episode_results::EpisodeLine;
 use rtf_report::escape;
+use rtf_run::campaign::directory::CampaignDir;
+use rtf_run::error::Failure;
+use rtf_run::{exit, terminal};
 
-use crate::campaign::directory::CampaignDir;
 use crate::cli::{CampaignCompareArgs, CampaignFormat};
 use crate::command::VerbResult;
-use crate::error::Failure;
-use crate::{exit, terminal};
 
 /// Compares the results of two directories.
 pub fn run(args: &CampaignCompareArgs) -> VerbResult {

@@ -7,13 +7,13 @@ use rtf_campaign::{Campaign, Judge, Judgement, Ledger};
 use rtf_engine::signal::SignalListener;
 use rtf_model::{Episode, EpisodeOutcome};
 use rtf_report::episode_results::EpisodeLine;
+use rtf_run::error::Failure;
+use rtf_run::exit;
 
 use super::pool::{EndedWorker, Pool, WorkerEvent};
 use super::progress::Progress;
 use super::summary::EarlyEnd;
 use super::worker;
-use crate::error::Failure;
-use crate::exit;
 
 /// SIGTERM.
 const TERM: i32 = 15;

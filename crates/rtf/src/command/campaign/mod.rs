@@ -18,10 +18,10 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::ArgMatches;
+use rtf_run::{campaign, terminal};
 
 use super::VerbResult;
 use crate::cli::CampaignVerb;
-use crate::{campaign, terminal};
 
 pub use task::run as run_task;
 

@@ -7,9 +7,8 @@ use rtf_campaign::{EpisodeResult, Ledger};
 use rtf_model::{Episode, EpisodeOutcome};
 use rtf_report::episode_results::EpisodeLine;
 use rtf_report::escape;
-
-use crate::error::Failure;
-use crate::terminal;
+use rtf_run::error::Failure;
+use rtf_run::terminal;
 
 /// How many episodes that did not pass are printed.
 const PRINTED: usize = 20;

@@ -15,21 +15,22 @@ use rtf_engine::signal::SignalListener;
 use rtf_history::entry;
 use rtf_plan::plan::Plan;
 use rtf_report::escape;
+use rtf_run::campaign::directory::{CampaignDir, CampaignJobs, Description};
+use rtf_run::campaign::judged::Judged;
+use rtf_run::campaign::start::CampaignStart;
+use rtf_run::campaign::{self, LoadedCampaign};
+use rtf_run::diagnostics::count;
+use rtf_run::error::Failure;
+use rtf_run::history::campaigns;
+use rtf_run::{plan, terminal};
 
 use super::coordinator::{CampaignEnd, Coordinator, episodes_of};
 use super::pool::{ClusterPool, LocalPool};
 use super::summary::{self, EarlyEnd};
-use crate::campaign::directory::{CampaignDir, CampaignJobs, Description};
-use crate::campaign::judged::Judged;
-use crate::campaign::start::CampaignStart;
-use crate::campaign::{self, LoadedCampaign};
 use crate::cli::{CampaignRunArgs, ExecutorOption, ProfileArgs};
 use crate::command::VerbResult;
-use crate::diagnostics::count;
-use crate::error::Failure;
-use crate::history::{self, campaigns};
-use crate::request::{TestsRequest, config};
-use crate::{executor, plan, terminal};
+use crate::executor;
+use crate::request::{self, config};
 
 /// How often the end of the workers of a killed campaign is checked.
 const POLL: Duration = Duration::from_millis(20);
@@ -46,7 +47,7 @@ struct Started {
 /// Runs a campaign, or continues one.
 pub fn run(mut args: CampaignRunArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_campaign(&mut args, matches)?;
-    let target = history::target(args.no_history, &args.history, &args.results)?;
+    let target = request::target(args.no_history, &args.history, &args.results)?;
     let started = match &args.resume {
         Some(path) => reopen(path, &args)?,
         None => begin(&args)?,
@@ -187,7 +188,7 @@ fn describe(
     file: &Path,
     profile: &ProfileArgs,
 ) -> Result<(Description, Arc<Plan>), Failure> {
-    let mut request = TestsRequest::of_suite(&loaded.suite, profile)?;
+    let mut request = request::tests_of_suite(&loaded.suite, profile)?;
     request.set_episodes(loaded.suite.clone(), loaded.episodes.episodes.clone());
     let planned = plan::plan(&request)?;
     planned.print_warnings()?;

@@ -10,19 +10,19 @@ use rtf_campaign::ranges::{meet_constraints, value_of};
 use rtf_engine::signal::SignalListener;
 use rtf_model::{Episode, Parameter};
 use rtf_report::episode_results::EpisodeLine;
+use rtf_run::campaign::directory::CampaignDir;
+use rtf_run::campaign::{self, LoadedCampaign};
+use rtf_run::error::Failure;
+use rtf_run::terminal;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use tokio::sync::mpsc;
 
 use super::run::describe_search;
 use super::stream_pool::{Ended, POLL, StreamPool};
-use crate::campaign::directory::CampaignDir;
-use crate::campaign::{self, LoadedCampaign};
 use crate::cli::CampaignSearchArgs;
 use crate::command::VerbResult;
-use crate::error::Failure;
 use crate::request::config;
-use crate::terminal;
 
 /// Runs what standard input asks for.
 pub fn run(mut args: CampaignSearchArgs, matches: &ArgMatches) -> VerbResult {

@@ -8,16 +8,17 @@ use clap::ArgMatches;
 use rtf_campaign::analysis::{self, ByParameter, Cell, FailureMap, Sample};
 use rtf_campaign::{EpisodeResult, Judge};
 use rtf_report::{escape, output_file};
+use rtf_run::campaign::directory::CampaignDir;
+use rtf_run::error::Failure;
+use rtf_run::formats::ReportFormat;
+use rtf_run::{campaign, reports, terminal};
 use rtf_web::html_report;
 use serde_json::json;
 
 use super::summary;
-use crate::campaign::directory::CampaignDir;
-use crate::cli::{CampaignShowArgs, CampaignShowFormat, ReportFormat};
+use crate::cli::{CampaignShowArgs, CampaignShowFormat};
 use crate::command::VerbResult;
-use crate::error::Failure;
 use crate::request::config;
-use crate::{campaign, reports, terminal};
 
 /// Prints the results of a campaign.
 pub fn run(args: &CampaignShowArgs, matches: &ArgMatches) -> VerbResult {

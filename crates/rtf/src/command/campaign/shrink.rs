@@ -11,20 +11,20 @@ use rtf_campaign::{Change, ParameterRange, Shrunk, ShrunkChange, shrink};
 use rtf_engine::signal::SignalListener;
 use rtf_model::{Episode, EpisodeOutcome, Parameter};
 use rtf_report::escape;
+use rtf_run::campaign::directory::{CampaignDir, Description};
+use rtf_run::campaign::{self, LoadedCampaign};
+use rtf_run::diagnostics::count;
+use rtf_run::error::Failure;
+use rtf_run::terminal;
 use serde_json::json;
 use tokio::runtime::Runtime;
 
 use super::progress::parameters;
 use super::run::describe_search;
 use super::stream_pool::{Ended, StreamPool};
-use crate::campaign::directory::{CampaignDir, Description};
-use crate::campaign::{self, LoadedCampaign};
 use crate::cli::{CampaignFormat, CampaignShrinkArgs};
 use crate::command::VerbResult;
-use crate::diagnostics::count;
-use crate::error::Failure;
 use crate::request::config;
-use crate::terminal;
 
 /// Shrinks an episode.
 pub fn run(mut args: CampaignShrinkArgs, matches: &ArgMatches) -> VerbResult {

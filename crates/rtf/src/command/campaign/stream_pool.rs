@@ -11,15 +11,16 @@ use rtf_campaign::ledger::MAX_BENCH_RESULTS;
 use rtf_engine::signal::SignalListener;
 use rtf_model::{Episode, EpisodeOutcome};
 use rtf_report::episode_results::EpisodeLine;
+use rtf_run::campaign::directory::CampaignDir;
+use rtf_run::error::Failure;
+use rtf_run::exit;
 use serde::Serialize;
 
 use super::assignment::ResultFollower;
 use super::worker;
-use crate::campaign::directory::CampaignDir;
 use crate::command::VerbResult;
 use crate::command::watch::exit_code;
-use crate::error::Failure;
-use crate::{exit, spawn_self};
+use crate::spawn_self;
 
 /// How often the results of the workers are read: an episode is the answer to a question.
 pub const POLL: Duration = Duration::from_millis(5);

@@ -8,10 +8,9 @@ use rtf_campaign::file::StoppingRule;
 use rtf_campaign::forecast::forecast_text;
 use rtf_campaign::{Campaign, EpisodeResult, Judge, Judgement, Ledger, Verdict};
 use rtf_report::episode_results::EpisodeLine;
-
-use crate::diagnostics::count;
-use crate::error::Failure;
-use crate::{exit, terminal};
+use rtf_run::diagnostics::count;
+use rtf_run::error::Failure;
+use rtf_run::{exit, terminal};
 
 /// Why a campaign ended before its claim was decided and all episodes had run.
 #[derive(Clone, Debug, PartialEq, Eq)]

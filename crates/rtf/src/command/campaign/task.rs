@@ -5,16 +5,17 @@ use std::process::ExitCode;
 
 use rtf_campaign::EpisodeList;
 use rtf_engine::signal::SignalListener;
+use rtf_run::campaign::arrays::CampaignArray;
+use rtf_run::campaign::directory::write;
+use rtf_run::campaign::read_list;
+use rtf_run::error::Failure;
+use rtf_run::exit;
 
 use super::worker;
-use crate::campaign::arrays::CampaignArray;
-use crate::campaign::directory::write;
-use crate::campaign::read_list;
 use crate::cli::CampaignTaskArgs;
 use crate::command::{VerbResult, watch};
-use crate::error::Failure;
 use crate::executor::EXIT_CODE;
-use crate::{exit, spawn_self};
+use crate::spawn_self;
 
 /// SIGTERM.
 const TERM: i32 = 15;

@@ -7,9 +7,9 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use rtf_report::escape;
+use rtf_run::campaign::directory::CampaignDir;
+use rtf_run::error::Failure;
 
-use crate::campaign::directory::CampaignDir;
-use crate::error::Failure;
 use crate::spawn_self;
 
 /// The file with what a worker printed.

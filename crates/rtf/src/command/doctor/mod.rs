@@ -10,12 +10,12 @@ mod print;
 use std::process::ExitCode;
 
 use rtf_plan::plan::RunnerEnvironment;
+use rtf_run::error::Failure;
+use rtf_run::exit;
 use serde::Serialize;
 
 use super::VerbResult;
 use crate::cli::{DoctorArgs, DoctorFormat};
-use crate::error::Failure;
-use crate::exit;
 
 /// The result of a check; `docs/how-to/doctor.md` documents the fields.
 #[derive(Debug, Serialize)]

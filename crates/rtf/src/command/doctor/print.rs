@@ -3,11 +3,11 @@
 use std::io::{self, Write};
 
 use rtf_report::escape;
+use rtf_run::error::Failure;
+use rtf_run::terminal;
 use serde::Serialize;
 
 use super::{CheckResult, Component, Missing};
-use crate::error::Failure;
-use crate::terminal;
 
 /// The column of details.
 const DETAILS: usize = 27;

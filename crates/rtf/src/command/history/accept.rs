@@ -10,14 +10,14 @@ use std::process::ExitCode;
 use clap::ArgMatches;
 use rtf_plan::suite::Span;
 use rtf_report::{escape, format_count, output_file};
+use rtf_run::error::Failure;
+use rtf_run::history::{self, OpenChange};
+use rtf_run::{plan, terminal};
 
 use super::failure;
 use crate::cli::HistoryAcceptArgs;
 use crate::command::VerbResult;
-use crate::error::Failure;
-use crate::history::{self, OpenChange};
-use crate::request::{TestsRequest, config};
-use crate::{plan, terminal};
+use crate::request::{self, config};
 
 const TAG: &str = "<learn";
 
@@ -26,7 +26,7 @@ const BYTE_ORDER_MARK: char = '\u{feff}';
 /// Accepts changes.
 pub fn run(mut args: HistoryAcceptArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_results(&mut args.input, matches)?;
-    let request = TestsRequest::resolve(&args.input)?;
+    let request = request::tests(&args.input)?;
     let planned = plan::plan(&request)?;
     refuse_unknown_names(&planned.plan, &args.measurements)?;
     let history = args.input.history.history.as_deref();

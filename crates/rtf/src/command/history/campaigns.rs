@@ -7,12 +7,13 @@ use rtf_history::answers::CampaignSeries;
 use rtf_history::entry::{CampaignEnd, CampaignInfo};
 use rtf_history::{RunSelection, Store};
 use rtf_report::{escape, format_count};
+use rtf_run::error::Failure;
+use rtf_run::history::time;
 use rtf_statistics::Rate;
 
-use super::{failure, open, print, select, text, time};
+use super::{failure, open, print, select, text};
 use crate::cli::HistoryCampaignsArgs;
 use crate::command::VerbResult;
-use crate::error::Failure;
 
 /// Lists campaigns.
 pub fn list(mut args: HistoryCampaignsArgs, matches: &ArgMatches) -> VerbResult {

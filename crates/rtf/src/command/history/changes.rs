@@ -7,8 +7,9 @@ use rtf_history::TestAttributes;
 use rtf_history::answers::{CampaignChange, RateSegment, SeriesChange};
 use rtf_history::statistics::Basis;
 use rtf_report::{escape, format_count};
+use rtf_run::history::time;
 
-use super::{campaigns, failure, open, print_both, select, text, time};
+use super::{campaigns, failure, open, print_both, select, text};
 use crate::cli::HistoryChangesArgs;
 use crate::command::VerbResult;
 

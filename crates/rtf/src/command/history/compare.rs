@@ -6,11 +6,11 @@ use clap::ArgMatches;
 use rtf_history::answers::{Comparison, NumberChange, TestComparison};
 use rtf_history::{TestAttributes, TestIdentity};
 use rtf_report::{escape, format_count};
+use rtf_run::error::Failure;
 
 use super::{failure, open, print, select, text};
 use crate::cli::HistoryCompareArgs;
 use crate::command::VerbResult;
-use crate::error::Failure;
 
 /// A smaller difference of durations or numbers is not printed as text.
 const THRESHOLD: f64 = 0.1;

@@ -7,13 +7,13 @@ use clap::ArgMatches;
 use rtf_history::Store;
 use rtf_history::store::StoreCounts;
 use rtf_report::{escape, format_count};
+use rtf_run::exit;
+use rtf_run::history::{campaigns, journals};
 use serde::Serialize;
 
 use super::{failure, open, print};
 use crate::cli::HistoryDoctorArgs;
 use crate::command::VerbResult;
-use crate::exit;
-use crate::history::{campaigns, journals};
 
 /// The state of the database.
 #[derive(Debug, Serialize)]

@@ -6,15 +6,15 @@ use std::process::ExitCode;
 use clap::ArgMatches;
 use rtf_history::{ImportOutcome, Store, StoreError};
 use rtf_report::format_count;
+use rtf_run::error::Failure;
+use rtf_run::exit;
+use rtf_run::history::campaigns::{self, CampaignImport};
+use rtf_run::history::journals::{self, JournalImport};
 use serde::Serialize;
 
 use super::{failure, print, resolve};
 use crate::cli::HistoryImportArgs;
 use crate::command::VerbResult;
-use crate::error::Failure;
-use crate::exit;
-use crate::history::campaigns::{self, CampaignImport};
-use crate::history::journals::{self, JournalImport};
 
 /// What was imported.
 #[derive(Debug, Default, Serialize)]

@@ -15,7 +15,6 @@ mod select;
 mod show;
 mod slow;
 mod text;
-mod time;
 mod trend;
 
 use std::io::Write;
@@ -23,16 +22,13 @@ use std::process::ExitCode;
 
 use clap::ArgMatches;
 use rtf_history::{Location, Store, StoreError};
+use rtf_run::error::Failure;
+use rtf_run::{history, terminal};
 use serde::Serialize;
-
-pub use select::TestFilter;
-pub use time::find_since;
 
 use super::VerbResult;
 use crate::cli::{HistoryArgs, HistoryFileArgs, HistoryFormat, HistoryVerb, ResultsArgs};
-use crate::error::Failure;
 use crate::request::config;
-use crate::{history, terminal};
 
 /// The version of the JSON documents.
 const VERSION: u32 = 1;

@@ -3,8 +3,9 @@
 use clap::ArgMatches;
 use rtf_history::store::Keep;
 use rtf_report::format_count;
+use rtf_run::history::time;
 
-use super::{campaigns, failure, open, print_both, runs, time};
+use super::{campaigns, failure, open, print_both, runs};
 use crate::cli::HistoryPruneArgs;
 use crate::command::VerbResult;
 

@@ -5,8 +5,9 @@ use std::io::{self, Write};
 use clap::ArgMatches;
 use rtf_history::answers::RunInfo;
 use rtf_report::escape;
+use rtf_run::history::time;
 
-use super::{failure, open, print, select, text, time};
+use super::{failure, open, print, select, text};
 use crate::cli::HistoryRunsArgs;
 use crate::command::VerbResult;
 

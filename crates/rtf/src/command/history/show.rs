@@ -7,11 +7,12 @@ use rtf_history::answers::{TestHistory, TestResult};
 use rtf_history::entry::NumberKind;
 use rtf_history::{RunSelection, Store, TestAttributes};
 use rtf_report::escape;
+use rtf_run::error::Failure;
+use rtf_run::history::time;
 
-use super::{failure, open, print, select, text, time};
+use super::{failure, open, print, select, text};
 use crate::cli::HistoryShowArgs;
 use crate::command::VerbResult;
-use crate::error::Failure;
 
 /// How many names a hint lists.
 const NAMES: usize = 10;

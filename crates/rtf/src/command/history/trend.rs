@@ -6,11 +6,12 @@ use clap::ArgMatches;
 use rtf_history::answers::TestSeries;
 use rtf_history::entry::NumberKind;
 use rtf_report::{escape, format_count};
+use rtf_run::error::Failure;
+use rtf_run::history::time;
 
-use super::{failure, open, print, select, text, time};
+use super::{failure, open, print, select, text};
 use crate::cli::HistoryTrendArgs;
 use crate::command::VerbResult;
-use crate::error::Failure;
 
 /// How many names a hint lists.
 const NAMES: usize = 10;

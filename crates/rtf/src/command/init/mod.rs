@@ -9,11 +9,11 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use rtf_report::escape;
+use rtf_run::error::Failure;
+use rtf_run::terminal;
 
 use super::VerbResult;
 use crate::cli::InitArgs;
-use crate::error::Failure;
-use crate::terminal;
 
 /// New files and their texts.
 const FILES: [(&str, &str); 3] = [

@@ -10,14 +10,14 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use name::ProjectName;
 use rtf_report::escape;
+use rtf_run::error::Failure;
+use rtf_run::terminal;
+use template::TemplateFile;
 
 use super::VerbResult;
 use crate::cli::NewArgs;
-use crate::error::Failure;
-use crate::terminal;
-use name::ProjectName;
-use template::TemplateFile;
 
 /// Writes a project.
 pub fn run(args: &NewArgs) -> VerbResult {

@@ -9,15 +9,15 @@ use std::sync::Arc;
 use clap::ArgMatches;
 use rtf_engine::signal::SignalListener;
 use rtf_report::run_dir::JOURNAL;
+use rtf_run::error::Failure;
+use rtf_run::web::{self, Served};
+use rtf_run::{exit, history, terminal};
 use rtf_web::{Capabilities, ShutdownHandle};
 
 use self::reruns::Reruns;
 use super::VerbResult;
 use crate::cli::ServeArgs;
-use crate::error::Failure;
 use crate::request::{config, web_settings};
-use crate::web::Served;
-use crate::{exit, history, terminal, web};
 
 /// Serves runs.
 pub fn run(mut args: ServeArgs, matches: &ArgMatches) -> VerbResult {

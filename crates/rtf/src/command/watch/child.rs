@@ -5,9 +5,10 @@ use std::io;
 use std::os::unix::process::ExitStatusExt;
 use std::process::ExitStatus;
 
+use rtf_run::exit;
 use tokio::process::{Child, Command};
 
-use crate::{exit, spawn_self};
+use crate::spawn_self;
 
 /// Starts a run, which ends with this process.
 pub fn start() -> io::Result<Child> {

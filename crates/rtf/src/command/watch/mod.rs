@@ -28,10 +28,11 @@ use self::state::{WatchAction, WatchState};
 use self::watched::Watched;
 use super::VerbResult;
 use crate::cli::{InputArgs, RunArgs};
-use crate::diagnostics::count;
-use crate::error::Failure;
 use crate::request::config;
-use crate::{spawn_self, terminal};
+use crate::spawn_self;
+use rtf_run::diagnostics::count;
+use rtf_run::error::Failure;
+use rtf_run::terminal;
 
 /// SIGTERM.
 const TERM: i32 = 15;

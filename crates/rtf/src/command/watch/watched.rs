@@ -10,11 +10,11 @@ use notify::{Event, EventKind};
 use rtf_model::Diagnostic;
 use rtf_plan::config::ConfigFiles;
 use rtf_plan::plan::{Plan, PlanDraft};
+use rtf_run::plan::{self, Draft};
 
 use super::debounce::FileChange;
 use crate::cli::InputArgs;
-use crate::plan::{self, Draft};
-use crate::request::TestsRequest;
+use crate::request;
 
 /// What is watched. Paths are absolute, their directories without links.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -39,7 +39,7 @@ impl Watched {
             watched.add_input(input, args.recursive);
         }
         watched.has_errors = true;
-        if let Ok(request) = TestsRequest::resolve(args) {
+        if let Ok(request) = request::tests(args) {
             let Draft { plan, problems, .. } = plan::draft(&request, PlanDraft::unchecked);
             (watched.problems, watched.has_errors) = (problems, plan.is_none());
             let dir = &request.options.runner.current_dir;

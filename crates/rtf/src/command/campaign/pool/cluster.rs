@@ -6,21 +6,21 @@ use std::fs::{self, File};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use rtf_cluster::{Job, JobArray};
 use rtf_model::Episode;
+use rtf_run::campaign::arrays::CampaignArray;
+use rtf_run::campaign::directory::{CampaignDir, CampaignJobs};
+use rtf_run::campaign::read_list;
+use rtf_run::error::Failure;
+use rtf_run::{exit, terminal};
 
 use super::super::assignment::Assignment;
 use super::super::worker;
 use super::{EndedWorker, Pool, WorkerEvent};
-use crate::campaign::arrays::CampaignArray;
-use crate::campaign::directory::{CampaignDir, CampaignJobs};
-use crate::campaign::read_list;
-use crate::error::Failure;
 use crate::executor::follow::{PollTimer, warn_once};
 use crate::executor::stop::{CANCELLED, Stop};
 use crate::executor::task_progress::TaskProgress;
 use crate::executor::{EXIT_CODE, cluster_failure, last_attempt, print_manifest};
-use crate::{exit, terminal};
-use rtf_cluster::{Job, JobArray};
 
 /// SIGTERM.
 const TERM: i32 = 15;

@@ -4,13 +4,13 @@ use std::process::{Child, ChildStdin};
 use std::time::Duration;
 
 use rtf_model::Episode;
+use rtf_run::campaign::directory::CampaignDir;
+use rtf_run::error::Failure;
 
 use super::super::assignment::Assignment;
 use super::super::worker;
 use super::{EndedWorker, Pool, WorkerEvent};
-use crate::campaign::directory::CampaignDir;
 use crate::command::watch;
-use crate::error::Failure;
 use crate::spawn_self;
 
 /// The workers on this machine.

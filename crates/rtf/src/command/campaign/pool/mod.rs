@@ -9,9 +9,9 @@ use std::time::Duration;
 
 use rtf_model::Episode;
 use rtf_report::episode_results::EpisodeLine;
+use rtf_run::error::Failure;
 
 use super::assignment::Assignment;
-use crate::error::Failure;
 
 pub use cluster::ClusterPool;
 pub use local::LocalPool;

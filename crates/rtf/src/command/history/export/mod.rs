@@ -14,13 +14,13 @@ use rtf_history::answers::{EpisodeLine, PointLine, ResultLine, RunInfo};
 use rtf_history::entry::CampaignInfo;
 use rtf_history::{Store, StoreError, TestAttributes};
 use rtf_report::output_file;
+use rtf_run::error::Failure;
+use rtf_run::terminal;
 
 use self::rows::{ExportRow, RowWriter};
 use super::{VERSION, failure, resolve, select};
 use crate::cli::{ExportFormat, ExportTable, HistoryExportArgs};
 use crate::command::VerbResult;
-use crate::error::Failure;
-use crate::terminal;
 
 /// An export that cannot be continued.
 #[derive(Debug)]
@@ -80,7 +80,7 @@ struct Question<'a> {
     table: ExportTable,
     store: &'a Store,
     runs: rtf_history::RunSelection,
-    filter: select::TestFilter,
+    filter: rtf_run::history::TestFilter,
 }
 
 impl<'a> Question<'a> {

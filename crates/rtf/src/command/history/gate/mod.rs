@@ -11,13 +11,13 @@ use rtf_history::answers::RunInfo;
 use rtf_history::answers::gate::{GateLimits, GateReport, GateRuns};
 use rtf_history::{RunSelection, Store, TestAttributes};
 use rtf_report::escape;
+use rtf_run::error::Failure;
+use rtf_run::history::{self, TestFilter};
+use rtf_run::{exit, terminal};
 
-use super::select::TestFilter;
 use super::{failure, resolve, write_json};
 use crate::cli::{GateFormat, HistoryGateArgs};
 use crate::command::VerbResult;
-use crate::error::Failure;
-use crate::{exit, history, terminal};
 
 /// How many names a hint lists.
 const NAMES: usize = 10;

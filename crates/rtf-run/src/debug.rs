@@ -10,7 +10,6 @@ use std::time::Duration;
 use rtf_engine::run::{DebugMode, DebugOptions};
 use rtf_plan::plan::{Plan, TestLimits, TestPlan};
 
-use crate::cli::{DebugArgs, RunArgs, StdoutFormat};
 use crate::diagnostics::count;
 use crate::error::Failure;
 use crate::terminal;
@@ -29,25 +28,19 @@ pub struct DebugRequest {
 }
 
 impl DebugRequest {
-    /// Resolves the arguments; `None` if no test is debugged.
-    pub fn resolve(args: &DebugArgs, run: &RunArgs) -> Result<Option<Self>, Failure> {
-        if args.debug_wait {
-            return Ok(Some(Self { mode: DebugMode::Wait, debugger: Vec::new() }));
-        }
-        let debugger = match &args.debugger {
-            Some(command) => split(command)?,
-            None if args.debug => Vec::new(),
-            None => return Ok(None),
-        };
-        if run.format != StdoutFormat::Console {
-            let error = "the test's output would be mixed with that of `--format`";
-            return Err(Failure::input(error).hint("leave `--format` out"));
-        }
+    /// The test waits for a debugger.
+    pub fn waiting() -> Self {
+        Self { mode: DebugMode::Wait, debugger: Vec::new() }
+    }
+
+    /// The test gets the terminal, and the command of a debugger before that of its host.
+    pub fn in_terminal(debugger: Option<&str>) -> Result<Self, Failure> {
+        let debugger = debugger.map(split).transpose()?.unwrap_or_default();
         if !stdin().is_terminal() {
             let error = "standard input is no terminal that the test could get";
             return Err(Failure::input(error).hint("without a terminal, use `--debug-wait`"));
         }
-        Ok(Some(Self { mode: DebugMode::Terminal, debugger }))
+        Ok(Self { mode: DebugMode::Terminal, debugger })
     }
 
     /// The options of the run.

@@ -10,27 +10,18 @@ use rtf_model::{Diagnostic, Manifest, Record};
 use rtf_plan::select::{PastResult, PastResults, Shard, ShardBy, TestOrder};
 
 use super::past_run;
-use crate::cli::{InputArgs, OrderOption};
 use crate::error::Failure;
 use crate::history::{self, PastTests};
 
 /// The word in `--shard-by duration=history`.
 const HISTORY: &str = "history";
 
-impl OrderOption {
-    /// The order and its name in the manifest; `None` for that of the files.
-    pub(super) fn by_history(self) -> Option<(TestOrder, &'static str)> {
-        match self {
-            Self::File => None,
-            Self::FailedFirst => Some((TestOrder::FailedFirst, "failed-first")),
-            Self::SlowestFirst => Some((TestOrder::SlowestFirst, "slowest-first")),
-        }
-    }
-}
-
 /// What past results are read for.
-pub(super) struct PastQuery<'a> {
-    pub args: &'a InputArgs,
+pub struct PastQuery<'a> {
+    /// The address of the history, if it is not in the results directory.
+    pub history: Option<&'a str>,
+    /// The results directory.
+    pub results: &'a Path,
     pub manifest: &'a Manifest,
     /// The working directory of the run.
     pub dir: &'a Path,
@@ -38,8 +29,7 @@ pub(super) struct PastQuery<'a> {
 
 impl PastQuery<'_> {
     fn history(&self) -> Result<Result<Arc<PastTests>, StoreError>, Failure> {
-        let url = self.args.history.history.as_deref();
-        let path = history::resolve(url, &self.args.results.results)?;
+        let path = history::resolve(self.history, self.results)?;
         let profile = self.manifest.profile.as_deref();
         Ok(PastTests::of_history(&path, profile, self.dir).map(Arc::new))
     }
@@ -65,9 +55,12 @@ impl PastQuery<'_> {
         }
     }
 
-    /// Adds the method that assigns tests to shards.
-    pub fn assign(&self, shard: Shard) -> Result<(Shard, Option<Arc<PastTests>>), Failure> {
-        let (results, method) = (&self.args.results.results, &self.args.select.shard_by);
+    /// Adds the method that assigns tests to shards: the value of `--shard-by`.
+    pub fn assign(
+        &self,
+        shard: Shard,
+        method: &str,
+    ) -> Result<(Shard, Option<Arc<PastTests>>), Failure> {
         let mut past = None;
         let by = match method.split_once('=') {
             None if method == "hash" => ShardBy::Hash,
@@ -80,7 +73,9 @@ impl PastQuery<'_> {
                 past = Some(Arc::new(PastTests::of_durations(Path::new(file), self.dir)?));
                 ShardBy::Duration(HashMap::new())
             }
-            Some(("duration", run)) => ShardBy::Duration(durations(&past_run::read(results, run)?)),
+            Some(("duration", run)) => {
+                ShardBy::Duration(durations(&past_run::read(self.results, run)?))
+            }
             _ => {
                 let error = format!(
                     "`--shard-by {method}`: expected `hash`, `count`, `duration=history`, \

@@ -14,7 +14,6 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::process::Pid;
 use rustix::termios::{QueueSelector, tcflush, tcgetpgrp, tcsetpgrp};
 
-use crate::cli::{RunArgs, StdoutFormat};
 use crate::control::ControlChannels;
 
 /// The longest line that a terminal passes.
@@ -42,13 +41,10 @@ impl Attendance {
         Self { console: false, unattended }
     }
 
-    /// Finds out who can answer the questions of a run.
-    pub fn find(args: &RunArgs) -> Self {
-        if args.no_input {
-            return Self::on_page(false, "`--no-input` is set");
-        }
-        let has_page = args.web.web.is_some();
-        match no_console(args) {
+    /// Finds out who can answer the questions of a run. `obstacle` is why the terminal of this process
+    /// is not one of an operator.
+    pub fn find(has_page: bool, obstacle: Option<&'static str>) -> Self {
+        match obstacle.or_else(no_console) {
             None => Self { console: true, unattended: None },
             Some(reason) => {
                 Self::on_page(has_page, &format!("{reason}, and there is no page (`--web`)"))
@@ -65,14 +61,9 @@ impl Attendance {
     }
 }
 
-/// Why an operator cannot answer on the terminal.
-fn no_console(args: &RunArgs) -> Option<&'static str> {
-    let reads_episodes = args.episodes.as_deref() == Some("-".as_ref());
-    if args.format != StdoutFormat::Console {
-        Some("standard output has another format")
-    } else if args.end_with_stdin || reads_episodes {
-        Some("standard input has another use")
-    } else if is_ci(std::env::var("CI").ok().as_deref()) {
+/// Why an operator cannot answer on the terminal of this process.
+fn no_console() -> Option<&'static str> {
+    if is_ci(std::env::var("CI").ok().as_deref()) {
         Some("the variable `CI` is set")
     } else if !io::stdin().is_terminal() {
         Some("standard input is no terminal")

@@ -13,7 +13,6 @@ use rtf_web::{Capabilities, WebServer};
 
 use crate::control::ControlChannels;
 use crate::error::Failure;
-use crate::history;
 use crate::request::{RunRequest, WebRequest};
 use crate::web::{self, Served};
 
@@ -54,10 +53,7 @@ pub fn prepare(
     let journal = Journal::create(&dir.journal()).map_err(Failure::input)?;
     let control = Arc::new(ControlChannels::new(request.shutdown_timeout));
     let role = Capabilities::Runner(dir.name.clone(), control.clone());
-    let history = match &request.history {
-        Some(target) => target.database.clone(),
-        None => history::resolve(None, &request.results)?,
-    };
+    let history = request.database.clone();
     let served = Served { results: &request.results, history, metrics: false, role };
     let server = bound.map(|bound| web::serve(bound, served)).transpose()?;
     let stdout = BackgroundWriter::new(Box::new(std::io::stdout())).map_err(Failure::internal)?;

@@ -16,10 +16,11 @@ use rtf_report::{Fanout, FanoutHandle, FanoutResult};
 use rtf_web::WebServer;
 use tokio::runtime::Runtime;
 
-use crate::command::VerbResult;
+use crate::VerbResult;
 use crate::control::ControlChannels;
 use crate::debug::DebugRequest;
 use crate::error::Failure;
+use crate::finish::Finish;
 use crate::plan::Planned;
 use crate::preflight::Prepared;
 use crate::request::RunRequest;
@@ -29,7 +30,13 @@ use crate::{exit, history, origin, terminal, web};
 const LATE: Duration = Duration::from_secs(2);
 
 /// Runs, and serves the run for as long as requested.
-pub fn run(request: &RunRequest, planned: &Planned, prepared: Prepared, guard: Link) -> VerbResult {
+pub fn run(
+    request: &RunRequest,
+    planned: &Planned,
+    prepared: Prepared,
+    guard: Link,
+    finish: &Finish,
+) -> VerbResult {
     let Prepared { dir, reporters, stdout, server, control } = prepared;
     let fanout = Fanout::start(reporters).map_err(Failure::internal)?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
@@ -46,12 +53,7 @@ pub fn run(request: &RunRequest, planned: &Planned, prepared: Prepared, guard: L
     let finished =
         runtime.block_on(finish_reports(fanout, &stdout, &dir.path)).map_err(Failure::internal)?;
     guard.finish();
-    if let Some(history) = &request.history {
-        history::import_run(history, &finished.record);
-    }
-    for collector in &request.collectors {
-        collector.push(&finished.record);
-    }
+    finish.finish(&finished.record);
     let code = ended.map(|killed_by| exit_code(killed_by, finished));
     let linger = request.web.as_ref().and_then(|web| web.linger);
     if let (Some(server), Some(time)) = (&server, linger)

@@ -12,7 +12,7 @@ use rtf_report::run_dir::RunDir;
 use rtf_report::tap::TapStream;
 use rtf_report::{AnnotationReporter, FailureNotice, Reporter, escape};
 
-use crate::cli::{Annotations, ReportFormat, StdoutFormat};
+use crate::formats::{Annotations, OutputFormat, ReportFormat};
 use crate::reports::Place;
 use crate::request::OutputRequest;
 use crate::{reports, rerun_command, terminal};
@@ -25,9 +25,9 @@ pub fn reporters(
     operator: Option<Operator>,
 ) -> Vec<Box<dyn Reporter>> {
     let printer: Box<dyn Reporter> = match request.format {
-        StdoutFormat::Json => Box::new(EventStream::new(Box::new(stdout.for_stream()))),
-        StdoutFormat::Tap => Box::new(TapStream::new(Box::new(stdout.for_stream()))),
-        StdoutFormat::Console => {
+        OutputFormat::Json => Box::new(EventStream::new(Box::new(stdout.for_stream()))),
+        OutputFormat::Tap => Box::new(TapStream::new(Box::new(stdout.for_stream()))),
+        OutputFormat::Console => {
             let options = ConsoleOptions {
                 progress: request.progress,
                 ..console_options(&dir.path, request.verbose)
@@ -46,7 +46,7 @@ pub fn reporters(
         }
     };
     let mut reporters = vec![printer];
-    if request.format != StdoutFormat::Console {
+    if request.format != OutputFormat::Console {
         reporters.push(Box::new(FailureNotice));
     }
     if request.annotations == Annotations::Github {
@@ -72,18 +72,18 @@ pub fn complete(request: &OutputRequest, journal: &Path, record: &Record) {
 
 /// Standard output may end within a line.
 fn complete_stdout(
-    format: StdoutFormat,
+    format: OutputFormat,
     out: &mut dyn Write,
     journal: &Path,
     record: &Record,
 ) -> io::Result<()> {
     match format {
-        StdoutFormat::Console => Ok(()),
-        StdoutFormat::Json => {
+        OutputFormat::Console => Ok(()),
+        OutputFormat::Json => {
             let text = std::fs::read_to_string(journal)?;
             writeln!(out, "\n{}", text.lines().next_back().unwrap_or_default())
         }
-        StdoutFormat::Tap => {
+        OutputFormat::Tap => {
             let reason = record.runner_death().unwrap_or("the runner died");
             writeln!(out, "\nBail out! {}", escape::line(reason))
         }

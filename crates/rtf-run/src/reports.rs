@@ -9,8 +9,8 @@ use rtf_report::run_dir::JOURNAL;
 use rtf_report::{ReportError, ReportFile, Reporter, code_quality, github, junit, otlp, tap, text};
 use rtf_web::html_report::{self, ReportSource};
 
-use crate::cli::ReportFormat;
 use crate::error::Failure;
+use crate::formats::ReportFormat;
 use crate::rerun_command;
 
 /// Opens the reports of a run in `results`. They are written when the run has

@@ -6,6 +6,8 @@ pub mod journals;
 mod learned;
 mod past_tests;
 mod source;
+mod test_filter;
+pub mod time;
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -16,8 +18,8 @@ use rtf_model::Record;
 use rtf_report::run_dir::JOURNAL;
 
 pub use source::ServedHistory;
+pub use test_filter::TestFilter;
 
-use crate::cli::{HistoryFileArgs, ResultsArgs};
 use crate::error::Failure;
 use crate::{revision, terminal};
 use journals::JournalImport;
@@ -53,18 +55,11 @@ pub struct HistoryTarget {
     pub results: PathBuf,
 }
 
-/// Where runs and campaigns are imported; `None`: they are not.
-pub fn target(
-    no_history: bool,
-    history: &HistoryFileArgs,
-    results: &ResultsArgs,
-) -> Result<Option<HistoryTarget>, Failure> {
-    if no_history {
-        return Ok(None);
+impl HistoryTarget {
+    /// The database of a results directory, or another one.
+    pub fn resolve(url: Option<&str>, results: &Path) -> Result<Self, Failure> {
+        Ok(Self { database: resolve(url, results)?, results: results.to_owned() })
     }
-    let results = results.results.clone();
-    let database = resolve(history.history.as_deref(), &results)?;
-    Ok(Some(HistoryTarget { database, results }))
 }
 
 /// Whether this is the database in a results directory, or its write-ahead log or index.

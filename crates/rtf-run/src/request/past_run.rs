@@ -52,7 +52,7 @@ pub fn damage_hint(run: &str) -> String {
 }
 
 /// The names of a test's suite and of the test.
-pub(super) fn names(record: &Record, test: &TestRecord) -> Option<(String, String)> {
+pub fn names(record: &Record, test: &TestRecord) -> Option<(String, String)> {
     let suite = record.suites.get(test.plan.suite.index())?;
     Some((suite.plan.name.clone(), test.plan.name.clone()))
 }

@@ -17,6 +17,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use rtf_campaign::EpisodeList;
+use rtf_cluster::Cluster;
 use rtf_model::Episode;
 use rtf_report::episode_results::{EPISODE_RESULTS, EpisodeLine};
 use rtf_report::journal;
@@ -27,7 +28,6 @@ use super::judged::{JUDGEMENT, Judged};
 use super::read_list;
 use super::start::CampaignStart;
 use crate::error::Failure;
-use rtf_cluster::Cluster;
 
 pub const DESCRIPTION: &str = "campaign.json";
 const EPISODES: &str = "episodes.jsonl";
@@ -36,7 +36,7 @@ const WORKERS: &str = "workers";
 const LIST: &str = "list.jsonl";
 
 /// What a campaign runs. Paths are absolute.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Description {
     /// The name.
     pub name: String,
@@ -284,7 +284,7 @@ pub fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
 }
 
 #[cfg(test)]
-pub mod tests {
+pub(crate) mod tests {
     use super::*;
 
     /// A campaign without episodes, in a temporary directory.

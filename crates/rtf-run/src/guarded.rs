@@ -13,7 +13,7 @@ use rtf_engine::guard::{self, GuardOutcome, Link, Recovery, Side};
 use rtf_model::{LeakedProcess, Record};
 use rtf_report::journal;
 
-use crate::command::VerbResult;
+use crate::VerbResult;
 use crate::error::Failure;
 use crate::{exit, operator, terminal};
 

@@ -4,7 +4,8 @@ use jiff::Timestamp;
 use rtf_history::{Location, Store, StoreError, TestAttributes};
 use rtf_web::{HistorySource, TestCondition};
 
-use crate::command::history::{TestFilter, find_since};
+use super::TestFilter;
+use super::time::find_since;
 
 /// The database of the web server.
 #[derive(Debug)]
