@@ -42,11 +42,8 @@ pub struct Comparison {
 /// How a measurement differs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MeasurementComparison {
-    /// The test.
     pub test: String,
-    /// The name.
     pub name: String,
-    /// The unit.
     pub unit: String,
     /// Episodes with a value in both versions.
     pub pairs: u64,

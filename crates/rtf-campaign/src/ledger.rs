@@ -134,7 +134,6 @@ impl Ledger {
         self.complete
     }
 
-    /// The executions of all episodes.
     #[must_use]
     pub fn episodes(&self) -> &[Executions] {
         &self.episodes

@@ -9,12 +9,9 @@ use crate::episodes::sampler::{number_of, text_of};
 use crate::episodes::space::table;
 use crate::file::{DeclaredParameter, Distribution};
 
-/// A parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ParameterRange {
-    /// The name.
     pub name: String,
-    /// The values.
     #[serde(flatten)]
     pub values: Values,
     /// The nominal value.
@@ -39,7 +36,6 @@ pub enum Values {
     },
     /// Normally distributed numbers.
     Normal {
-        /// The mean.
         mean: f64,
         /// The standard deviation.
         deviation: f64,

@@ -15,7 +15,6 @@ const PRECISION: f64 = 1.0 / 64.0;
 /// A parameter of an episode that fails.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Change {
-    /// The name.
     pub name: String,
     /// The nominal value.
     pub nominal: String,
@@ -28,7 +27,6 @@ pub struct Change {
 /// A parameter with which an episode fails.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct ShrunkChange {
-    /// The name.
     pub name: String,
     /// The nominal value.
     pub nominal: String,

@@ -12,7 +12,6 @@ pub enum ClusterError {
     /// A command could not be started.
     #[error("cannot execute `{command}`")]
     Execute {
-        /// The command.
         command: &'static str,
         /// The cause.
         #[source]
@@ -21,7 +20,6 @@ pub enum ClusterError {
     /// A command reported an error.
     #[error("`{command}` failed: {message}")]
     Failed {
-        /// The command.
         command: &'static str,
         /// Its standard error.
         message: String,
@@ -29,7 +27,6 @@ pub enum ClusterError {
     /// The output of a command cannot be read.
     #[error("the output of `{command}` is invalid")]
     Invalid {
-        /// The command.
         command: &'static str,
         /// The cause.
         #[source]

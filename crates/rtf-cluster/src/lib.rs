@@ -70,7 +70,6 @@ pub struct JobState {
 /// A task that has not ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TaskState {
-    /// Its number.
     pub number: u32,
     /// Whether it has not started.
     pub is_waiting: bool,

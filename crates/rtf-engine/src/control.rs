@@ -33,21 +33,18 @@ pub struct Stop {
 pub enum Control {
     /// Stop a running test, and skip its remaining repetitions.
     StopTest {
-        /// The test.
         test: TestId,
         /// The user who requested it.
         by: String,
     },
     /// Stop a suite's running tests, and skip the rest of the suite.
     SkipSuite {
-        /// The suite.
         suite: SuiteId,
         /// The user who requested it.
         by: String,
     },
     /// Answer a question of a running test.
     Answer {
-        /// The test.
         test: TestId,
         /// The answer.
         reply: QuestionReply,

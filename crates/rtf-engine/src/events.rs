@@ -47,7 +47,6 @@ impl Events {
         &self.token
     }
 
-    /// Emits an event.
     pub fn emit(&self, kind: EventKind) {
         // The lock keeps numbers, times and the order of the sink consistent.
         let mut next = self.next.lock().unwrap_or_else(PoisonError::into_inner);

@@ -15,7 +15,6 @@ use crate::plan_texts::Substitution;
 
 /// The number of the episode, for the processes of a suite.
 const EPISODE_VARIABLE: &str = "RTF_EPISODE";
-/// The seed of the episode.
 const SEED_VARIABLE: &str = "RTF_EPISODE_SEED";
 
 /// The values that fixtures have provided; those of a restarted fixture replace the old ones.

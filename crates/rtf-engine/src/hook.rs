@@ -127,7 +127,6 @@ impl HookJudgement {
         }
     }
 
-    /// The limit has passed.
     pub fn limit_passed(&mut self) {
         self.fail(format!("it did not end within {:?}", self.limit));
     }

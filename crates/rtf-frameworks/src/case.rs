@@ -13,10 +13,8 @@ pub struct ListedCase {
     /// Its location, if the framework knows it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub location: Option<Location>,
-    /// Its tags.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
-    /// Its parameters.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub parameters: Vec<Parameter>,
     /// Whether the framework runs it only on demand.
@@ -49,13 +47,9 @@ impl ListedCase {
 /// The start of a case, as a framework reports it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct StartedCase {
-    /// Its name.
     pub name: String,
-    /// Its parameters.
     pub parameters: Vec<Parameter>,
-    /// Its tags.
     pub tags: Vec<String>,
-    /// Its location.
     pub location: Option<Location>,
 }
 
@@ -92,7 +86,6 @@ pub struct Selection<'a> {
 /// How often the arguments of a framework let it run each case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Repetition {
-    /// Once.
     #[default]
     Once,
     /// Until it passes, at most this often; the last attempt counts.

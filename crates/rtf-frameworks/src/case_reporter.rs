@@ -21,7 +21,6 @@ const NAMES_SHOWN: usize = 5;
 /// Maximum number of planned names in a notification, whose size is limited.
 const NAMES_IN_LINE: usize = 4096;
 
-/// An open case.
 #[derive(Debug)]
 struct OpenCase {
     path: String,

@@ -51,7 +51,6 @@ impl ListError {
 /// What an adapter needs to start a program.
 #[derive(Clone, Debug)]
 pub struct Launch<'a> {
-    /// The program.
     pub test: &'a TestProgram,
     /// The cases that it runs.
     pub cases: Selection<'a>,

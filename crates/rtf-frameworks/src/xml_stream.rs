@@ -34,14 +34,11 @@ impl Attributes {
 pub enum XmlEvent {
     /// An element begins.
     Start {
-        /// Its name.
         name: String,
-        /// Its attributes.
         attributes: Attributes,
     },
     /// An element ends.
     End {
-        /// Its name.
         name: String,
         /// The text in it, without that of the elements in it.
         text: String,

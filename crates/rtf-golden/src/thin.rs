@@ -10,9 +10,7 @@ const MAX_TIME_DECIMALS: usize = 9;
 /// Rounded points of a trajectory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Thinned {
-    /// The points.
     pub points: Vec<(f64, f64)>,
-    /// The decimals of times.
     pub time_decimals: usize,
     /// The decimals of values.
     pub decimals: usize,

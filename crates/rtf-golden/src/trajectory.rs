@@ -92,7 +92,6 @@ impl Trajectory {
         Ok(Self { points: shifted })
     }
 
-    /// The points.
     #[must_use]
     pub fn points(&self) -> &[(f64, f64)] {
         &self.points

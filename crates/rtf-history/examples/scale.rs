@@ -184,7 +184,6 @@ fn check(
     if missed.is_empty() && wrong.is_empty() { Ok(()) } else { Err(what.into()) }
 }
 
-/// Imports all runs.
 fn import(name: &str, store: &mut Store, (runs, tests): (u32, u32)) -> Result<(), Box<dyn Error>> {
     let mut random = Random(1);
     let (mut importing, mut slowest) = (0.0, 0.0_f64);

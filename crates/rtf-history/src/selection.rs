@@ -73,7 +73,6 @@ impl RunSelection {
 /// A test, for a [`TestSelection`].
 #[derive(Clone, Debug, Default)]
 pub struct TestAttributes {
-    /// The identity.
     pub identity: TestIdentity,
     /// The type of its plug-in in its newest run.
     pub plugin_type: String,

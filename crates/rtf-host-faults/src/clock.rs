@@ -7,7 +7,6 @@ use rtf_host::SuiteClock;
 /// How often a simulated clock is read.
 const READ_INTERVAL: Duration = Duration::from_millis(2);
 
-/// The clock.
 #[derive(Debug)]
 pub(crate) struct FaultClock {
     simulated: Option<SuiteClock>,

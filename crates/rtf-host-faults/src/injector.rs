@@ -52,7 +52,6 @@ pub(crate) struct ActiveFault {
 pub(crate) enum NotInjected {
     /// It is not possible.
     Failed(String),
-    /// The test has ended.
     TestEnded,
 }
 

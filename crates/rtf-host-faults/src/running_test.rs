@@ -6,7 +6,6 @@ use rtf_statistics::RandomStream;
 
 use crate::settings::Settings;
 
-/// A running test.
 #[derive(Debug)]
 pub(crate) struct RunningTest {
     pub id: TestId,

@@ -11,7 +11,6 @@ use rtf_model::{
 
 use crate::targets::Targets;
 
-/// A fault.
 #[derive(Debug)]
 pub(crate) struct FaultSettings {
     /// As the suite declares it.

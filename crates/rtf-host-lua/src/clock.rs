@@ -6,7 +6,6 @@ use std::time::Instant;
 use rtf_model::parse_clock;
 use rtf_model::protocol::CLOCK_VARIABLE;
 
-/// A clock.
 #[derive(Debug)]
 pub(crate) enum Clock {
     /// The wall clock, from this time on.

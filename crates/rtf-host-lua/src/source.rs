@@ -15,7 +15,6 @@ pub(crate) use style::Style;
 /// A chunk name that Lua's messages can be split after: a path may contain colons.
 const NAMELESS: &str = "=?";
 
-/// A compiled file.
 pub(crate) struct CompiledFile {
     pub(crate) chunk: Function,
     pub(crate) style: Style,

@@ -10,7 +10,6 @@ const BATCH_SAMPLES: usize = 256;
 #[derive(Debug)]
 pub(crate) struct Batches {
     test: TestId,
-    /// One for each signal.
     signals: Vec<Samples>,
 }
 

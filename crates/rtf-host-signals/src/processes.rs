@@ -10,7 +10,6 @@ use rtf_model::ProcessQuantity;
 /// How long a list of processes is used. Finding them takes longer than measuring them.
 const SEARCH_INTERVAL: Duration = Duration::from_secs(1);
 
-/// The processes of a fixture.
 #[derive(Debug)]
 pub(crate) struct FixtureProcesses {
     marks: ProcessMarks,

@@ -35,13 +35,11 @@ pub(crate) struct ProcessSettings {
     pub signal: usize,
     /// The value of `RTF_OWNER` of the fixture's processes.
     pub owner: String,
-    /// The quantity.
     pub quantity: ProcessQuantity,
     /// The interval.
     pub every: Duration,
 }
 
-/// A recording.
 #[derive(Debug)]
 pub(crate) struct RecordingSettings {
     /// The program that reads it, and its arguments.

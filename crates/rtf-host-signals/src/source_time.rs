@@ -13,7 +13,6 @@ pub(crate) struct SampleTime {
     pub arrival: Instant,
 }
 
-/// The start of a test.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TestStart {
     pub instant: Instant,

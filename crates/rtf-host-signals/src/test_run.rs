@@ -36,7 +36,6 @@ pub(crate) struct TestRun {
     has_unit_error: bool,
 }
 
-/// A sample of a signal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SignalSample {
     /// The index of its source.

@@ -19,7 +19,6 @@ pub enum Incoming {
     Request {
         /// The request's number.
         id: Option<u64>,
-        /// The request.
         request: Box<Request>,
     },
     /// A line that the host cannot carry out.

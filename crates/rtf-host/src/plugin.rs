@@ -26,7 +26,6 @@ pub enum Step {
     Run,
     /// `check` of a fixture. A plug-in without it is healthy.
     Check,
-    /// `tearDown`.
     TearDown,
 }
 

@@ -19,7 +19,6 @@ const BATCH_AGE: Duration = Duration::from_millis(100);
 pub struct Sample<'a> {
     /// The signal.
     pub name: &'a str,
-    /// The value.
     pub value: f64,
     /// Its unit, empty for a pure number.
     pub unit: &'a str,

@@ -6,7 +6,6 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use rtf_model::parse_clock;
 use rtf_model::protocol::CLOCK_FILE_VARIABLE;
 
-/// The clock of the suite.
 #[derive(Debug)]
 pub struct SuiteClock {
     /// The file with the simulated time.

@@ -11,7 +11,6 @@ use crate::error::ImportError;
 /// A test of CTest.
 #[derive(Clone, Debug, Default)]
 pub struct ListedTest {
-    /// Its name.
     pub name: String,
     /// Program and arguments; empty if the program does not exist.
     pub command: Vec<String>,

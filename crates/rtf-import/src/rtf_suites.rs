@@ -11,7 +11,6 @@ const EXPORT: &str = "rtf_suite";
 /// A suite, and how to run it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExistingSuite {
-    /// Its file.
     pub file: PathBuf,
     /// The environment variables with which CTest runs it, as `NAME=VALUE`.
     pub env: Vec<String>,
@@ -58,7 +57,6 @@ pub fn exported(package: &Path) -> Result<Vec<ExistingSuite>, ImportError> {
 
 /// What a command of CTest does.
 enum Part {
-    /// It runs a suite.
     Run(ExistingSuite),
     /// It shows a result of a run.
     Result,

@@ -24,7 +24,6 @@ pub struct ImportedTest {
     pub timeout: Option<String>,
     /// The limit of each case in seconds.
     pub case_timeout: Option<String>,
-    /// Its tags.
     pub tags: Vec<String>,
     /// Its environment variables.
     pub env: Vec<(String, String)>,

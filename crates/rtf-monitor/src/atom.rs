@@ -10,7 +10,6 @@ use crate::syntax::Span;
 /// Which function of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// Its margin.
     Margin,
     /// `inf` where it is true, `-inf` where it is false.
     Truth,

@@ -24,7 +24,6 @@ impl Comparison {
         matches!(self.sign, Sign::Equal | Sign::Different)
     }
 
-    /// The margin of a difference.
     pub(crate) fn margin(&self, difference: f64) -> f64 {
         match self.sign {
             _ if self.is_truth => self.truth(difference),

@@ -9,7 +9,6 @@ use crate::unit::{self, UnitError};
 /// A signal in a formula.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SignalReference {
-    /// Its name.
     pub name: String,
     /// The first place in the text, in bytes.
     pub range: Range<usize>,
@@ -33,7 +32,6 @@ impl Formula {
         Ok(Self { text: text.to_owned(), condition, signals })
     }
 
-    /// The text.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text

@@ -5,7 +5,6 @@ use std::ops::Range;
 /// Whether a formula holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// It holds.
     Holds,
     /// It does not hold.
     Violated,
@@ -13,7 +12,6 @@ pub enum Verdict {
     NotEnoughData,
 }
 
-/// The value of a signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SignalValue {
     /// The index of the signal in [`crate::Formula::signals`].

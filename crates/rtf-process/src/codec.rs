@@ -18,10 +18,8 @@ pub const LINE_LIMIT: usize = 16 * 1024 * 1024;
 /// How many characters of an invalid line are shown.
 const SHOWN: usize = 200;
 
-/// A message of a host.
 #[derive(Debug)]
 pub enum HostMessage {
-    /// A notification.
     Notification(Notification),
     /// The reply to a request.
     Reply(u64, Reply<serde_json::Value>),

@@ -41,7 +41,6 @@ pub struct Probes {
 /// A value that the process provides.
 #[derive(Clone, Debug)]
 pub struct ValueSpec {
-    /// Its name.
     pub name: String,
     /// Where it comes from.
     pub source: ValueSource,
@@ -51,7 +50,6 @@ pub struct ValueSpec {
     pub timeout: Duration,
 }
 
-/// The source of a value.
 #[derive(Clone, Debug)]
 pub enum ValueSource {
     /// The content of a file.
@@ -60,12 +58,9 @@ pub enum ValueSource {
     Command(Vec<String>),
 }
 
-/// A probe.
 #[derive(Clone, Debug)]
 pub struct ProbeSpec {
-    /// Its target.
     pub target: ProbeTarget,
-    /// The interval.
     pub interval: Duration,
     /// The limit for one evaluation.
     pub timeout: Duration,

@@ -11,7 +11,6 @@ use tokio::process::{ChildStderr, ChildStdout};
 use crate::foreground::Foreground;
 use crate::{tree, unix};
 
-/// A started process.
 #[derive(Debug)]
 pub struct StartedProcess {
     /// Its id, and that of its group.
@@ -24,7 +23,6 @@ pub struct StartedProcess {
     pub stderr: Option<ChildStderr>,
     /// The foreground of the terminal, if it has it.
     pub foreground: Option<Foreground>,
-    /// Its end.
     pub end: ProcessEnd,
 }
 

@@ -8,7 +8,6 @@ use crate::namespaces::Namespaces;
 /// The captured outputs of a process.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Streams {
-    /// Both.
     #[default]
     Both,
     /// Standard output; standard error is discarded.
@@ -26,7 +25,6 @@ pub enum Streams {
 pub enum ProcessRole {
     /// Runs a test.
     Test,
-    /// Is a fixture.
     Fixture,
     /// Is a hook, which must run under all circumstances.
     Hook,

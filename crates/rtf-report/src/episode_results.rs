@@ -39,11 +39,8 @@ pub struct EpisodeLine {
 /// A number that a test measured in an episode, outside of cases.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EpisodeMeasurement {
-    /// The test.
     pub test: String,
-    /// The name.
     pub name: String,
-    /// The unit.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub unit: String,
     /// The value; `None` if it is not finite.

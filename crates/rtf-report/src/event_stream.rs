@@ -14,7 +14,6 @@ pub struct EventStream {
 }
 
 impl EventStream {
-    /// Writes to `out`.
     #[must_use]
     pub fn new(out: Box<dyn Write + Send>) -> Self {
         Self { stream: LineStream::new("the events", out), sealer: LineSealer::default() }

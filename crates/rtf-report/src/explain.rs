@@ -216,7 +216,6 @@ pub(crate) fn stack(stack: &str, extent: Extent, sink: Sink<'_>) {
     left_out(text.lines().count(), extent.stack_lines, "line", sink);
 }
 
-/// The leaked processes.
 pub(crate) fn left(processes: &[LeakedProcess], sink: Sink<'_>) {
     if processes.is_empty() {
         return;

@@ -41,7 +41,6 @@ impl Bar {
         Self { bar: None, prompt: None }
     }
 
-    /// Shows it.
     pub fn show(&mut self, state: &BarState) {
         self.show_prompt(state.prompt.as_deref());
         if state.is_over || self.prompt.is_some() {

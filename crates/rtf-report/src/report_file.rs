@@ -7,10 +7,8 @@ use rtf_model::{Event, Record};
 
 use crate::{ReportError, Reporter, is_disconnect, output_file};
 
-/// Writes a report of a record.
 pub type WriteReport = Box<dyn Fn(&mut dyn Write, &Record) -> io::Result<()> + Send>;
 
-/// Prints annotations for a record.
 pub type PrintAnnotations = Box<dyn Fn(&Record) -> io::Result<()> + Send>;
 
 /// Prints annotations on standard error at the end of the run.

@@ -11,7 +11,6 @@ use rtf_model::{Record, TestRecord, Verdict};
 /// `rtf show --single-test`: the test skipped itself. Automake and CTest know this code.
 const SKIPPED: u8 = 77;
 
-/// The exit code of a run.
 pub fn of_run(record: &Record) -> ExitCode {
     of_result(record, record.is_green())
 }
@@ -33,7 +32,6 @@ pub fn without_tests(record: &Record) -> ExitCode {
     of_result(record, record.is_green_without_tests())
 }
 
-/// The exit code of a test.
 pub fn of_test(record: &Record, test: &TestRecord) -> ExitCode {
     let is_green = !record.is_damaged() && record.has_green_result(test);
     ExitCode::from(match test.final_verdict() {

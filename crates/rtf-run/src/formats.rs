@@ -3,14 +3,12 @@
 use std::fmt;
 use std::path::PathBuf;
 
-/// The format of a report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReportFormat {
     /// Plain text.
     Text,
     /// JUnit XML.
     Junit,
-    /// TAP 14.
     Tap,
     /// GitLab's code quality JSON.
     CodeQuality,
@@ -29,7 +27,6 @@ pub enum ReportFormat {
 /// Where a report goes.
 #[derive(Clone, PartialEq, Eq)]
 pub enum ReportTarget {
-    /// A file.
     File(PathBuf),
     /// The address of a collector, which may contain a password.
     Collector(String),
@@ -63,7 +60,6 @@ pub enum OutputFormat {
     Console,
     /// The event stream, one event per line, as in the journal.
     Json,
-    /// TAP 14.
     Tap,
 }
 
@@ -74,7 +70,6 @@ pub enum Annotations {
     Github,
     /// Collapsible sections of the job log.
     Gitlab,
-    /// None.
     None,
 }
 

@@ -37,7 +37,6 @@ impl Planned {
         self.warnings.extend(history::learn(plan, database, manifest, dir));
     }
 
-    /// Prints the warnings.
     pub fn print_warnings(&self) -> Result<(), Failure> {
         diagnostics::print(&self.warnings, &self.sources)
     }

@@ -24,11 +24,9 @@ const STREAMS: usize = 256;
 /// The shared state of all handlers. Cheap to clone.
 #[derive(Clone)]
 pub struct App {
-    /// The runs.
     pub runs: Arc<Runs>,
     /// The results of many runs.
     pub history: Arc<dyn HistorySource>,
-    /// The campaigns.
     pub campaigns: Arc<dyn CampaignSource>,
     /// Whether it is also shown as metrics.
     pub metrics: bool,

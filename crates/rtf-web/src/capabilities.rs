@@ -21,11 +21,9 @@ pub trait RunControl: Send + Sync {
 /// An answer to a question of a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AnswerRequest {
-    /// The test.
     pub test: TestId,
     /// The number of the question.
     pub question: u32,
-    /// The answer.
     pub answer: String,
     /// Who answers.
     pub by: Respondent,
@@ -50,7 +48,6 @@ pub trait RunStarter: Send + Sync {
 /// A finished run of the results directory.
 #[derive(Clone, Copy, Debug)]
 pub struct FinishedRun<'a> {
-    /// Its name.
     pub name: &'a str,
     /// The directory in which it was started.
     pub folder: &'a Path,

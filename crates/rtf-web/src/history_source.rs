@@ -4,7 +4,6 @@
 use jiff::Timestamp;
 use rtf_history::{Store, StoreError, TestAttributes};
 
-/// A condition on tests.
 pub type TestCondition = Box<dyn Fn(&TestAttributes) -> bool + Send>;
 
 /// The history that a server shows.

@@ -83,7 +83,6 @@ impl Routes {
         Self { router: router(app), token, address, _senders: senders }
     }
 
-    /// Answers a request of this client.
     pub async fn answer(&self, client: SocketAddr, mut request: Request<Body>) -> Response {
         request.extensions_mut().insert(ConnectInfo(Peer(client)));
         match self.router.clone().call(request).await {
@@ -92,7 +91,6 @@ impl Routes {
         }
     }
 
-    /// The token.
     #[must_use]
     pub fn token(&self) -> &str {
         &self.token

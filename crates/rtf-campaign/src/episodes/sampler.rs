@@ -64,7 +64,6 @@ impl<'a> Sampler<'a> {
         Some(Self { distribution, source })
     }
 
-    /// The value for a candidate.
     pub fn value(&mut self, candidate: u64) -> Value {
         let unit = self.source.unit(candidate);
         let number = match self.distribution {
@@ -121,7 +120,6 @@ impl UnitSource {
 }
 
 impl ShuffledParts {
-    /// The part for a candidate.
     fn part(&mut self, candidate: u64) -> u32 {
         let count = (self.order.len() as u64).max(1);
         let (round, index) = (candidate / count, candidate % count);

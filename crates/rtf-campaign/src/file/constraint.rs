@@ -54,13 +54,9 @@ pub enum Operation {
 /// An arithmetic expression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expression {
-    /// A number.
     Number(f64),
-    /// A parameter.
     Parameter(Spanned<String>),
-    /// The negative of an expression.
     Negative(Box<Expression>),
-    /// An operation.
     Binary(Operation, Box<[Expression; 2]>),
 }
 

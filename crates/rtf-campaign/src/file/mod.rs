@@ -43,8 +43,6 @@ pub struct Campaign {
     pub parameters: Vec<DeclaredParameter>,
     /// The conditions that all episodes meet.
     pub constraints: Vec<Constraint>,
-    /// The claim.
     pub claim: Claim,
-    /// The stopping rule.
     pub stop: StoppingRule,
 }

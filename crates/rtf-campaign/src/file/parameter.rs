@@ -12,9 +12,7 @@ use super::{real, schema};
 pub enum DeclaredParameter {
     /// All combinations with the other grids and files.
     Grid {
-        /// The name.
         name: Spanned<String>,
-        /// The values.
         values: Vec<String>,
         /// The nominal value; `None` for the first one.
         nominal: Option<String>,
@@ -23,7 +21,6 @@ pub enum DeclaredParameter {
     File(Spanned<String>),
     /// A value for each episode.
     Sampled {
-        /// The name.
         name: Spanned<String>,
         /// How the values of the episodes depend on each other.
         design: Design,
@@ -59,7 +56,6 @@ pub enum Distribution {
     },
     /// A normally distributed number.
     Normal {
-        /// The mean.
         mean: f64,
         /// The standard deviation.
         deviation: f64,

@@ -3,7 +3,6 @@
 
 use rtf_plan::suite::schema::{ElementSchema, leaf};
 
-/// `<campaign>`.
 pub(super) const CAMPAIGN: ElementSchema = ElementSchema {
     name: "campaign",
     attributes: &["name", "suite", "episodes", "seed", "repeats", "budget"],
@@ -36,11 +35,8 @@ pub(super) const DESIGN: ElementSchema = leaf(
     &["name", "distribution", "values", "low", "high", "mean", "deviation", "nominal"],
 );
 
-/// `<constraint>`.
 pub(super) const CONSTRAINT: ElementSchema = leaf("constraint", &["require"]);
-/// `<claim>`.
 pub(super) const CLAIM: ElementSchema = leaf("claim", &["require", "confidence"]);
-/// `<stop>`.
 pub(super) const STOP: ElementSchema = leaf("stop", &["rule"]);
 /// `<stop rule="sprt">`.
 pub(super) const SPRT: ElementSchema =

@@ -8,7 +8,6 @@ use serde::{Deserialize, Serialize};
 
 use super::{Campaign, DeclaredParameter, real, schema};
 
-/// A stopping rule.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "rule", rename_all = "kebab-case")]
 pub enum StoppingRule {

@@ -14,7 +14,6 @@ use super::{ClusterError, JOB, JobArray, JobState, OUTPUTS, SCRIPT, create_dir, 
 
 const KUBECTL: &str = "kubectl";
 
-/// The manifest of the Job.
 const MANIFEST: &str = "job.json";
 
 /// The numbers of the tasks, one a line: that of an index is in the line with its number.

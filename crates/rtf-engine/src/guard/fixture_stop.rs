@@ -79,7 +79,6 @@ pub fn stop_fixtures(fixtures: HashMap<i32, GuardedFixture>, signals: &mut Guard
     }
 }
 
-/// The stop of one tree.
 struct TreeStop {
     tree: Tree,
     stop: FixtureStop,

@@ -19,7 +19,6 @@ use rtf_plan::plan::SuitePlan;
 use rtf_process::descriptor_passing::MAX_DESCRIPTORS;
 use rtf_process::task::ProcessStream;
 
-/// The interval of heartbeats.
 pub const HEARTBEAT_INTERVAL: Duration = Duration::from_secs(1);
 
 /// The connection to the guard. Sending never fails and never blocks: the run continues

@@ -19,7 +19,6 @@ use rtf_plan::plan::{HookBody, HookPlan, SuitePlan};
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "message", rename_all = "kebab-case")]
 pub enum GuardMessage {
-    /// The run starts.
     RunStarted {
         /// Its journal, absolute.
         journal: PathBuf,
@@ -42,7 +41,6 @@ pub enum GuardMessage {
         /// The process that holds the namespaces, if the descriptors are theirs.
         holder: Option<i32>,
     },
-    /// A suite starts.
     SuiteStarted {
         suite: SuiteId,
         /// Its hooks, in their order.

@@ -48,7 +48,6 @@ pub struct Recovery {
 /// A hook that ran.
 #[derive(Debug)]
 pub struct RecoveredHook {
-    /// Its name.
     pub name: String,
     /// Why the robot may not be in a safe state.
     pub problem: Option<String>,

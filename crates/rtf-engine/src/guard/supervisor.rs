@@ -27,7 +27,6 @@ pub const MIN_PATIENCE: Duration = Duration::from_secs(5);
 /// A silent runner has handled at most this many requests: its hooks are run.
 const MAX_HANDLED_REQUESTS: u32 = 2;
 
-/// The guard.
 #[derive(Debug)]
 pub struct Guard {
     runner: i32,

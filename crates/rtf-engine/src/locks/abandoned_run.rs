@@ -20,7 +20,6 @@ use rtf_process::tree;
 const TERM_GRACE: Duration = Duration::from_secs(5);
 /// How long killed processes may take to end.
 const KILL_LIMIT: Duration = Duration::from_secs(5);
-/// The polling interval.
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
 const SIGTERM: i32 = 15;
 const SIGKILL: i32 = 9;

@@ -29,7 +29,6 @@ pub const DIR_VARIABLE: &str = "RTF_LOCKS";
 /// The default directory of locks, which is the same for all users.
 pub const DEFAULT_DIR: &str = "/tmp/rtf-locks";
 
-/// The owner of a lock.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct LockOwner {
@@ -41,9 +40,7 @@ pub struct LockOwner {
     pub pid: u32,
     /// Since when, as RFC 3339.
     pub since: String,
-    /// The run.
     pub run: String,
-    /// The suite.
     pub suite: String,
     /// The prefix of the scopes of its processes.
     pub scope: String,
@@ -82,7 +79,6 @@ pub struct HeldLock {
     pub name: String,
     /// The slot of the resource, from 1.
     pub slot: u32,
-    /// Its owner.
     pub owner: LockOwner,
 }
 

@@ -12,7 +12,6 @@ use crate::control::{Control, Controls, Stop};
 use crate::events::Events;
 use rtf_plan::plan::{RequiredResource, SuitePlan};
 
-/// The polling interval.
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
 /// A shorter wait is not reported.
 const REPORT_AFTER: Duration = Duration::from_millis(200);

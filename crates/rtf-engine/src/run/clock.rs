@@ -9,7 +9,6 @@ use rtf_process::spawn_request::ProcessRole;
 
 use rtf_plan::plan::SuitePlan;
 
-/// The polling interval.
 const POLL_INTERVAL: Duration = Duration::from_millis(10);
 
 /// The clock of a suite; the wall clock if it has no file.

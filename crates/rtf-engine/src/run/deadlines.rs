@@ -84,7 +84,6 @@ impl Deadlines {
         self.asking.entry(test).or_insert(now);
     }
 
-    /// Resumes the limits of a test.
     pub(super) fn resume_limits(&mut self, test: TestId, now: Duration) {
         let Some(since) = self.asking.remove(&test) else { return };
         let late = now.saturating_sub(since);

@@ -45,7 +45,6 @@ use rtf_process::spawner::Spawner;
 use rtf_process::task::TaskContext;
 use rtf_process::{prepare_process, tree};
 
-/// The options of a run.
 #[derive(Debug)]
 pub struct RunOptions {
     /// The first event. Its `run` must be unique on this machine.

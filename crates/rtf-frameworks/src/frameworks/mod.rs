@@ -30,7 +30,6 @@ type AnyFramework = Box<dyn Framework + Send + Sync>;
 /// A type, as suites name it, and its adapter.
 type FrameworkType = (&'static str, fn() -> AnyFramework);
 
-/// All types.
 const TYPES: &[FrameworkType] = &[
     ("aunit", || Box::new(aunit::AUnit)),
     ("boost", || Box::new(boost::BoostTest)),

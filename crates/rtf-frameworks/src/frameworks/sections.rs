@@ -101,7 +101,6 @@ impl Sections {
         }
     }
 
-    /// Finishes the case.
     pub fn finish_case(mut self, result: CaseResult, cases: &mut CaseReporter<'_>) {
         self.depth = 0;
         self.close_left(cases);

@@ -107,7 +107,6 @@ fn group_of(pid: i32) -> Option<Pid> {
     getpgid(Some(Pid::from_raw(pid)?)).ok()
 }
 
-/// One run of a test.
 struct TestRun<'a> {
     framework: &'a dyn Framework,
     program: TestProgram,

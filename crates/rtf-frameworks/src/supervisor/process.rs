@@ -170,7 +170,6 @@ fn start<'a>(
     })
 }
 
-/// Executes a program.
 fn execute(mut command: Command, ends: &ProgramEnds<'_>) -> Result<Pid, String> {
     let own = |fd: &OwnedFd| fd.try_clone().map(Stdio::from);
     let [stdout, stderr] = ends.outputs;

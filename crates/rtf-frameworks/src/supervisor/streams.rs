@@ -119,7 +119,6 @@ pub(super) struct Channel {
     pub source: Option<Source>,
     /// The program's end, which it inherits.
     pub theirs: Option<OwnedFd>,
-    /// Its address.
     pub address: OpenChannel,
 }
 

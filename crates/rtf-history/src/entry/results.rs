@@ -13,11 +13,9 @@ use crate::{SuiteFileBase, TestAttributes, TestIdentity};
 /// The result of a test, or of a case, in a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResultEntry {
-    /// The identity of the test.
     pub identity: TestIdentity,
     /// The type of its plug-in.
     pub plugin_type: String,
-    /// Its tags.
     pub tags: Vec<String>,
     /// Its values of a matrix, as name and value.
     pub parameters: Vec<(String, String)>,
@@ -39,7 +37,6 @@ pub struct ResultEntry {
     pub robot: String,
     /// The hash of its plug-in.
     pub plugin_hash: Option<String>,
-    /// The hash of its sources.
     pub source_hash: Option<String>,
     /// Its measurements and signals.
     pub numbers: Vec<(SeriesName, NumberSummary)>,

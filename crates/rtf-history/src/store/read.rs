@@ -9,7 +9,6 @@ use crate::answers::RunInfo;
 use crate::entry::{NumberKind, NumberSummary, RunEnd, SeriesName};
 use crate::{TestAttributes, TestIdentity};
 
-/// A test.
 #[derive(Clone, Debug)]
 pub(crate) struct TestRow {
     pub id: i64,
@@ -44,7 +43,6 @@ pub(crate) struct PointRow {
 /// Number of rows of the tables.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct StoreCounts {
-    /// Runs.
     pub runs: u64,
     /// Tests and cases.
     pub tests: u64,
@@ -56,11 +54,9 @@ pub struct StoreCounts {
     pub points: u64,
     /// Runs that are not stored because they were pruned, or merged from others.
     pub pruned: u64,
-    /// Campaigns.
     pub campaigns: u64,
     /// Episodes of campaigns.
     pub episodes: u64,
-    /// Campaigns that were pruned.
     pub pruned_campaigns: u64,
 }
 

@@ -164,11 +164,9 @@ SELECT id, uid, name, started_us, duration_us, ended, green, passed, failed, err
   timed_out, collapsed, skipped, interrupted, commit_hash, branch, dirty, author_time, ci_job,
   host, cpus, load_percent, profile, parameters, rtf
 FROM run ORDER BY started_us, uid";
-/// All tests.
 pub const TESTS: &str = "
 SELECT id, suite_file, suite, name, case_path, plugin_type, tags, parameters, renamed_to
 FROM test ORDER BY suite_file, suite, name, case_path";
-/// The results of a test.
 pub const RESULTS_OF_TEST: &str = "
 SELECT run_id, verdict, flaky, attempts, problems, duration_us, reason, robot, plugin_hash,
   source_hash
@@ -190,14 +188,11 @@ pub const TESTS_WITH_PROBLEMS: &str =
 /// The tests that passed in a run.
 pub const PASSED_TESTS_OF_RUN: &str =
     "SELECT test_id FROM result WHERE run_id = $1 AND verdict = 'passed'";
-/// The series of a test.
 pub const SERIES_OF_TEST: &str =
     "SELECT id, kind, name, unit FROM series WHERE test_id = $1 ORDER BY kind, name, unit";
-/// All series.
 pub const SERIES: &str = "SELECT id, kind, name, unit, test_id FROM series ORDER BY id";
 /// The tests that have a series of this name.
 pub const TESTS_WITH_SERIES: &str = "SELECT DISTINCT test_id FROM series WHERE name = $1";
-/// All names of series.
 pub const SERIES_NAMES: &str = "SELECT DISTINCT name FROM series ORDER BY name";
 /// The points of a test, in all its series.
 pub const POINTS_OF_TEST: &str = "

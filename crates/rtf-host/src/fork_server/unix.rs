@@ -193,7 +193,6 @@ pub(crate) fn receive(socket: &OwnedFd, packet: &mut [u8]) -> io::Result<(usize,
     Ok((received.bytes, descriptors))
 }
 
-/// Sends a packet.
 pub(crate) fn send_packet(socket: &OwnedFd, packet: &[u8]) -> io::Result<()> {
     rustix::io::retry_on_intr(|| rustix::net::send(socket, packet, SendFlags::NOSIGNAL))?;
     Ok(())

@@ -14,7 +14,6 @@ use super::{Session, SessionState};
 /// A question of a plug-in.
 #[derive(Clone, Debug, Default)]
 pub struct Inquiry {
-    /// The text.
     pub text: String,
     /// The possible answers; without them, the answer is any line of text.
     pub choices: Vec<String>,

@@ -35,7 +35,6 @@ impl Parsed {
         }
     }
 
-    /// A number.
     pub(super) fn number(self) -> Result<Number, ParseError> {
         match self {
             Self::Number(number) => Ok(number),

@@ -178,7 +178,6 @@ impl Parser {
     }
 }
 
-/// A function with one argument.
 fn apply(function: &str, argument: Parsed, span: Span) -> Result<Parsed, ParseError> {
     if let "rise" | "fall" = function {
         let inner = Box::new(argument.condition()?);

@@ -75,7 +75,6 @@ pub(crate) enum Number {
     Absolute { inner: Box<Number>, span: Span },
     /// The least or greatest of at least two expressions.
     Extreme { which: Extreme, parts: Vec<Number>, span: Span },
-    /// An operation.
     Operation { operation: Arithmetic, sides: Box<[Number; 2]>, span: Span },
 }
 
@@ -117,7 +116,6 @@ impl Number {
 pub(crate) enum Condition {
     /// `true` or `false`.
     Constant(bool, Span),
-    /// A comparison.
     Comparison { comparison: Comparison, sides: Box<[Number; 2]>, span: Span },
     /// A signal as a condition: its last sample is above 0.5.
     Truth { index: usize, span: Span },

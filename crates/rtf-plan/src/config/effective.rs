@@ -28,7 +28,6 @@ pub struct Setting {
 pub struct SettingsQuery<'a> {
     /// The nearest `rtf.toml`.
     pub view: Option<ProfileView>,
-    /// The suite and its settings.
     pub suite: Option<(&'a SourceText, &'a SharedSettings)>,
     /// The settings of the run.
     pub run: &'a [RunValue],

@@ -15,7 +15,6 @@ const FILE_NAME: &str = "rtf.toml";
 /// An `rtf.toml`.
 #[derive(Debug)]
 pub struct ConfigFile {
-    /// Its text.
     pub source: Arc<SourceText>,
     /// Its absolute path.
     pub path: PathBuf,
@@ -23,7 +22,6 @@ pub struct ConfigFile {
     pub profile: Option<Spanned<String>>,
     /// The values outside of profiles.
     pub defaults: Layer,
-    /// The profiles.
     pub profiles: Vec<(Spanned<String>, Layer)>,
 }
 

@@ -1,6 +1,5 @@
 //! The keys of an `rtf.toml` and the formats of their values.
 
-/// The format of a value.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ValueFormat {
     /// Any text.
@@ -21,7 +20,6 @@ pub(super) enum ValueFormat {
     Words(&'static [&'static str]),
     /// A table of user-defined names with texts, numbers or booleans as values.
     Named(NameKind),
-    /// A table of keys.
     Table(&'static [Key]),
 }
 
@@ -30,7 +28,6 @@ pub(super) enum ValueFormat {
 pub(super) struct Key {
     /// Its name in its table.
     pub name: &'static str,
-    /// The format of its value.
     pub format: ValueFormat,
     /// What it does, in one line of `schemas/config.json`.
     pub summary: &'static str,
@@ -45,7 +42,6 @@ const fn key(name: &'static str, format: ValueFormat, summary: &'static str) -> 
 pub(super) enum NameKind {
     /// Environment variables.
     Variables,
-    /// Parameters.
     Parameters,
 }
 

@@ -85,11 +85,9 @@ fn overlay_limits(suite: &mut DeclaredSuite, view: &ProfileView) {
 /// The settings of plug-ins that are given directly.
 #[derive(Debug)]
 pub(crate) struct DirectPluginConfig {
-    /// The environment string.
     pub environment: String,
     /// The environment variables.
     pub env: Vec<(String, String)>,
-    /// The limits.
     pub limits: DeclaredLimits,
 }
 

@@ -54,7 +54,6 @@ impl ConfigRequest {
 /// A file under the selected profile.
 #[derive(Clone, Debug)]
 pub struct ProfileView {
-    /// The file.
     pub file: Rc<ConfigFile>,
     /// The profile's name and its index in the file; `None` if the file does
     /// not have the profile: its defaults apply.

@@ -26,7 +26,6 @@ pub struct Entry {
 pub struct Layer {
     /// The settings.
     pub entries: Vec<Entry>,
-    /// The quarantines.
     pub quarantines: Vec<Quarantine>,
 }
 

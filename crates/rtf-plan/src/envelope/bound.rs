@@ -33,7 +33,6 @@ impl Bound {
         is_unit.then_some(Self { value, unit, span: Some(span) })
     }
 
-    /// A value of the model.
     pub fn of_model(value: f64, unit: &str) -> Self {
         Self { value, unit: unit.to_owned(), span: None }
     }

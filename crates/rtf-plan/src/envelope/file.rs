@@ -11,10 +11,8 @@ use super::yaml::{Node, Value};
 use crate::suite::{SourceText, Span, Spanned, parse_duration};
 use crate::wording::{quoted, suggest};
 
-/// The keys of a file.
 const FILE_KEYS: [&str; 9] =
     ["robot", "model", "severity", "factor", "signals", "ignore", "joints", "limits", PROFILES];
-/// The keys of a limit.
 pub(super) const LIMIT_KEYS: [&str; 6] = ["signal", "rate-of", "min", "max", "for", "severity"];
 /// The keys of a limit of a magnitude.
 const MAGNITUDE_KEYS: [&str; 5] = ["signal", "rate-of", "max", "for", "severity"];
@@ -26,7 +24,6 @@ pub(super) const RATE: &str = "rate";
 /// The name of the signals of a quantity.
 #[derive(Clone, Debug)]
 pub(super) struct Template {
-    /// The quantity.
     pub quantity: Quantity,
     /// A text with `{joint}`, or `rate`.
     pub text: Spanned<String>,
@@ -35,9 +32,7 @@ pub(super) struct Template {
 /// A joint, and its limits.
 #[derive(Clone, Debug)]
 pub(super) struct DeclaredJoint {
-    /// The name.
     pub name: Spanned<String>,
-    /// The limits.
     pub limits: Vec<(Quantity, DeclaredLimit)>,
 }
 
@@ -56,7 +51,6 @@ pub(super) struct LimitsFile {
     pub templates: Vec<Template>,
     /// Joints without limits.
     pub ignore: Vec<Spanned<String>>,
-    /// The joints.
     pub joints: Vec<DeclaredJoint>,
     /// Other limits.
     pub limits: Vec<(Spanned<String>, DeclaredLimit)>,

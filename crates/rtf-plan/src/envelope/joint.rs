@@ -10,11 +10,9 @@ use crate::suite::{ElementReader, Span};
 /// A joint that can move.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ModelJoint {
-    /// The name.
     pub name: String,
     /// The line and column of its limits.
     pub at: (u32, u32),
-    /// The limits.
     pub limits: Vec<(Quantity, Bounds)>,
 }
 

@@ -51,7 +51,6 @@ impl Quantity {
 /// What is limited.
 #[derive(Clone, Debug)]
 pub(super) enum Input {
-    /// A signal.
     Signal(Spanned<String>),
     /// The slope of a signal.
     RateOf(Spanned<String>),

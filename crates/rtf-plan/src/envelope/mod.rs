@@ -30,7 +30,6 @@ use crate::wording::suggest;
 pub(crate) struct EnvelopeMonitor {
     /// The name, with that of the robot.
     pub name: String,
-    /// The formula.
     pub formula: String,
     /// What a violation means.
     pub severity: FindingSeverity,

@@ -122,7 +122,6 @@ pub struct CheckReport {
     pub cases: Option<Vec<ListedCase>>,
 }
 
-/// A file and its uses.
 #[derive(Debug)]
 struct FileUse {
     file: PathBuf,
@@ -132,10 +131,8 @@ struct FileUse {
     optional: bool,
 }
 
-/// The findings of all checks.
 #[derive(Default)]
 pub(super) struct CheckFindings {
-    /// The problems.
     pub problems: Vec<Diagnostic>,
     /// The plug-ins' texts to which the problems refer.
     pub sources: SourceMap,

@@ -4,7 +4,6 @@ use std::time::Duration;
 
 use super::{FixtureLimits, TestLimits};
 
-/// The limits of a test.
 pub(crate) const TEST: TestLimits = TestLimits {
     load: Duration::from_secs(30),
     setup: Duration::from_secs(60),
@@ -14,7 +13,6 @@ pub(crate) const TEST: TestLimits = TestLimits {
     grace: Duration::from_secs(2),
 };
 
-/// The limits of a fixture.
 pub(crate) const FIXTURE: FixtureLimits = FixtureLimits {
     setup: Duration::from_secs(60),
     check: Duration::from_secs(5),

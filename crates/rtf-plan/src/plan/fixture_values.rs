@@ -10,7 +10,6 @@ use crate::wording::suggest;
 
 /// The fixtures of a suite, in the order of the file.
 pub(super) struct DeclaredValues<'a> {
-    /// The fixtures.
     pub fixtures: &'a [DeclaredFixture],
     /// Their names.
     pub names: &'a [String],

@@ -209,7 +209,6 @@ fn fork_problem(forks: Forks, is_separate: bool) -> Option<(&'static str, String
 /// The tests of other frameworks in a suite, by the name of the test.
 #[derive(Debug, Default)]
 pub(super) struct FrameworkTests {
-    /// The tests.
     pub tests: HashMap<String, FrameworkTest>,
 }
 

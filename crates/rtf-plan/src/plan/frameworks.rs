@@ -30,7 +30,6 @@ const PYTHON_TESTS: Framework =
 const BUILT_DIRECTORY: Framework =
     Framework { subject: TestSubject::Directory, check_limit: COMPILE_LIMIT, ..LISTED_PROGRAM };
 
-/// All frameworks.
 pub(super) static FRAMEWORKS: [HostKind; 15] = [
     kind(&["gtest"], FORKED_PROGRAM),
     kind(&["catch2"], FORKED_PROGRAM),

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use super::host_kind::HostKind;
 
-/// A file.
 #[derive(Debug)]
 pub(super) struct InputFile {
     /// The absolute path.
@@ -16,7 +15,6 @@ pub(super) struct InputFile {
 /// A plug-in that is given directly: by name, or as a file of a directory.
 #[derive(Debug)]
 pub(super) struct DirectPlugin {
-    /// The file.
     pub file: InputFile,
     /// The type.
     pub kind: &'static HostKind,

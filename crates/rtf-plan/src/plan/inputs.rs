@@ -18,7 +18,6 @@ use crate::wording::quoted;
 pub(super) enum ResolvedInput {
     /// A suite file.
     Suite {
-        /// The file.
         file: InputFile,
         /// The names of the selected tests; empty for all.
         only: Vec<String>,

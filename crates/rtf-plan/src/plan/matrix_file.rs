@@ -14,7 +14,6 @@ use crate::suite::{SourceText, Span, invalid_value, read_source};
 /// Names of parameters, and rows of their values.
 #[derive(Debug)]
 pub struct MatrixTable {
-    /// The names.
     pub names: Vec<String>,
     /// The combinations of their values, each as long as `names`.
     pub rows: Vec<Vec<String>>,

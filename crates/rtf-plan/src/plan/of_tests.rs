@@ -11,7 +11,6 @@ pub(super) trait OfTest {
     const WHAT: &'static str;
     /// The position of its tag.
     fn span(&self) -> Span;
-    /// Its name.
     fn name(&self) -> &Spanned<String>;
     /// Whether this is the same declaration, of another combination of a matrix.
     fn is_same(&self, other: &Self) -> bool {

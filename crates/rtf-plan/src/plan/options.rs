@@ -74,7 +74,6 @@ pub struct Options {
     pub repetitions: u32,
     /// The rules for names and options.
     pub compatibility: Compatibility,
-    /// The environment of the runner.
     pub runner: RunnerEnvironment,
     /// The profile and the parameters.
     pub config_request: ConfigRequest,

@@ -6,7 +6,6 @@ use super::{FixtureBody, FixturePlan};
 use crate::suite::Spanned;
 use crate::wording::suggest;
 
-/// The fixtures of a suite.
 #[derive(Clone, Copy)]
 pub(super) struct SuiteFixtures<'f> {
     /// Those that were planned.

@@ -60,7 +60,6 @@ pub struct Probe {
     pub timeout: Duration,
 }
 
-/// The kinds of probes.
 #[derive(Clone, Debug)]
 pub enum ProbeKind {
     /// Whether `host:port` accepts a TCP connection.

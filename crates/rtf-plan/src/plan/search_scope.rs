@@ -29,7 +29,6 @@ pub(super) type Env = [(String, String)];
 /// The runner's environment with the variables of a suite and of a test on top.
 #[derive(Clone, Copy)]
 pub(super) struct SearchScope<'a> {
-    /// The environment of the runner.
     pub runner: &'a RunnerEnvironment,
     /// The working directory of the suite's processes.
     pub dir: &'a Path,

@@ -33,7 +33,6 @@ const MEASURE_EVERY: Duration = Duration::from_millis(100);
 
 /// The declared signals and monitors of a suite.
 pub(super) struct DeclaredSignals {
-    /// The sources.
     pub sources: Vec<DeclaredSource>,
     /// The monitors of all tests.
     pub monitors: Vec<DeclaredMonitor>,

@@ -31,7 +31,6 @@ const DIRECT_PLUGINS: &str = "plug-ins";
 /// A suite whose plug-ins have not been checked yet.
 #[derive(Debug)]
 pub(super) struct SuiteDraft {
-    /// The plan.
     pub plan: SuitePlan,
     /// Its tests of other frameworks.
     pub frameworks: FrameworkTests,

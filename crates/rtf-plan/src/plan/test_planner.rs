@@ -66,7 +66,6 @@ pub(super) struct TestPlanner<'p, 'a, 'c> {
 
 /// The planned tests of a suite.
 pub(super) struct PlannedTests {
-    /// The tests.
     pub tests: Vec<TestPlan>,
     /// Those of other frameworks.
     pub frameworks: FrameworkTests,

@@ -54,10 +54,8 @@ impl Plan {
     }
 }
 
-/// The plan of a suite.
 #[derive(Clone, Debug)]
 pub struct SuitePlan {
-    /// The id.
     pub id: SuiteId,
     /// The name, unique in the run.
     pub name: String,
@@ -143,10 +141,8 @@ pub enum Preparation {
     Refused(String),
 }
 
-/// The plan of a fixture.
 #[derive(Clone, Debug)]
 pub struct FixturePlan {
-    /// The id.
     pub id: FixtureId,
     /// The name, unique in the suite.
     pub name: String,
@@ -212,7 +208,6 @@ pub struct ProvidePlan {
 pub struct FixtureLimits {
     /// From the start of its process until it is ready.
     pub setup: Duration,
-    /// For one `check`.
     pub check: Duration,
     /// For one `testStarted` or `testFinished`.
     pub notify: Duration,
@@ -243,10 +238,8 @@ impl FixtureBody {
     }
 }
 
-/// The plan of a test.
 #[derive(Clone, Debug)]
 pub struct TestPlan {
-    /// The id.
     pub id: TestId,
     /// The name, unique in the suite.
     pub name: String,
@@ -337,7 +330,6 @@ pub struct ListedCase {
     /// The position of its source.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub location: Option<Location>,
-    /// Its tags.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
     /// Whether its framework does not run it unless it is selected.
@@ -359,9 +351,7 @@ pub struct CombinationPlan {
 pub struct TestLimits {
     /// From the start of its process to `setup`.
     pub load: Duration,
-    /// For `setup`.
     pub setup: Duration,
-    /// For `run`.
     pub run: Duration,
     /// For `tearDown`, and then for the exit of the process.
     pub teardown: Duration,
@@ -374,11 +364,9 @@ pub struct TestLimits {
 /// The plan of a hook, which brings the robot into a safe state.
 #[derive(Clone, Debug)]
 pub struct HookPlan {
-    /// The id.
     pub id: HookId,
     /// The name, unique in the suite.
     pub name: String,
-    /// The triggers.
     pub on: Vec<Trigger>,
     /// The plug-in or command.
     pub body: HookBody,
@@ -412,7 +400,6 @@ pub struct PluginPlan {
     pub host: Arc<HostPlan>,
 }
 
-/// The plan of a host.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HostPlan {
     /// The program and its arguments.

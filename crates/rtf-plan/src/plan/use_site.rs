@@ -11,7 +11,6 @@ use crate::suite::{SourceText, Span};
 pub(super) enum UseSite {
     /// In a suite file.
     Suite(Arc<SourceText>, Span),
-    /// On the command line.
     CommandLine,
 }
 
@@ -36,7 +35,6 @@ pub(super) struct UseSites {
 const MAX_LABELS: usize = 3;
 
 impl UseSites {
-    /// Adds a use.
     pub fn add(&mut self, site: &UseSite) {
         self.count += 1;
         if self.shown.len() < MAX_LABELS {

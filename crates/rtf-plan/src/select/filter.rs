@@ -69,7 +69,6 @@ impl FilterMatch {
 /// The property of a test that a filter compares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Subject {
-    /// Each of its tags.
     Tag,
     /// The type of its plug-in: `dll`, `lua`, …
     Type,
@@ -113,9 +112,7 @@ impl FilterSubject for Candidate<'_> {
 /// A test and its suite.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate<'p> {
-    /// The suite.
     pub suite: &'p SuitePlan,
-    /// The test.
     pub test: &'p TestPlan,
 }
 

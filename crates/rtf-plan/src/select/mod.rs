@@ -41,7 +41,6 @@ pub struct Selection {
     pub only: Option<HashMap<(String, String), Vec<CaseSelector>>>,
     /// The seed for a random order of suites, and of the tests of each.
     pub shuffle: Option<u64>,
-    /// The order by past results.
     pub order: Option<(TestOrder, PastResults)>,
     /// One part of the selected tests.
     pub shard: Option<Shard>,

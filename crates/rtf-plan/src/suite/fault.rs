@@ -39,7 +39,6 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option
     Some(DeclaredFault { span: ElementReader::tag(node), name: name?, effect, at, duration, seed })
 }
 
-/// Reads the faults of an element.
 pub(super) fn read_all(reader: &mut ElementReader<'_>, parent: Node<'_, '_>) -> Vec<DeclaredFault> {
     let mut faults = Vec::new();
     for node in parent.children().filter(|child| child.has_tag_name("fault")) {

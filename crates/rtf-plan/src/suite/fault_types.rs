@@ -4,12 +4,10 @@ use rtf_model::{FaultAmount, FaultTime, NetworkFault, ValuesFault};
 
 use super::{Span, Spanned};
 
-/// A `<fault>`.
 #[derive(Clone, Debug)]
 pub struct DeclaredFault {
     /// The position of the tag.
     pub span: Span,
-    /// The name.
     pub name: Spanned<String>,
     /// What is done.
     pub effect: DeclaredEffect,

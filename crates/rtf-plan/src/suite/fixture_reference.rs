@@ -39,7 +39,6 @@ pub enum ReferenceUser {
     Suite,
     /// A fixture, by its index in the file.
     Fixture(usize),
-    /// A test or a hook.
     TestOrHook,
 }
 

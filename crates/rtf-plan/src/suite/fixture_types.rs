@@ -4,12 +4,10 @@ use std::time::Duration;
 
 use super::{DeclaredPlugin, HookKind, Span, Spanned};
 
-/// A `<fixture>`.
 #[derive(Clone, Debug)]
 pub struct DeclaredFixture {
     /// The position of the tag.
     pub span: Span,
-    /// The name.
     pub name: Option<Spanned<String>>,
     /// The fixtures that must be ready before it; `None` without the attribute.
     pub depends: Option<Vec<Spanned<String>>>,
@@ -37,7 +35,6 @@ pub struct DeclaredFixture {
     pub check_every: Option<Duration>,
 }
 
-/// A `<reset>`.
 #[derive(Clone, Debug)]
 pub struct DeclaredReset {
     /// The plug-in or program.
@@ -48,7 +45,6 @@ pub struct DeclaredReset {
     pub restart_every: Option<u32>,
 }
 
-/// The kinds of a `<fixture>`.
 #[derive(Clone, Debug)]
 pub enum FixtureKind {
     /// A fixture plug-in.
@@ -88,9 +84,7 @@ pub enum DeclaredValueSource {
 pub struct DeclaredProcess {
     /// The program and its arguments; empty if they are missing, which was reported.
     pub command: Spanned<Vec<String>>,
-    /// The probes.
     pub probes: DeclaredProbes,
-    /// The signal that stops it.
     pub stop_signal: Option<i32>,
     /// The time between that signal and the kill.
     pub stop_grace: Option<Duration>,
@@ -103,9 +97,7 @@ pub struct DeclaredProcess {
 /// The probes of a `<fixture type="process">`.
 #[derive(Clone, Debug, Default)]
 pub struct DeclaredProbes {
-    /// The `<ready>` probes.
     pub ready: Vec<DeclaredProbe>,
-    /// The `<alive>` probes.
     pub alive: Vec<DeclaredProbe>,
 }
 
@@ -122,7 +114,6 @@ pub struct DeclaredProbe {
     pub timeout: Option<Duration>,
 }
 
-/// The kinds of probes.
 #[derive(Clone, Debug)]
 pub enum DeclaredProbeKind {
     /// Whether `host:port` accepts a TCP connection.
@@ -139,7 +130,6 @@ pub enum DeclaredProbeKind {
     Middleware(MiddlewareProbe),
 }
 
-/// A probe of a middleware.
 #[derive(Clone, Debug)]
 pub struct MiddlewareProbe {
     /// The attribute: `ros-node`, `ros-topic`, …

@@ -17,10 +17,8 @@ pub struct DeclaredPlugin {
     pub param: String,
 }
 
-/// A `<hook>`.
 #[derive(Clone, Debug)]
 pub struct DeclaredHook {
-    /// The name.
     pub name: Option<Spanned<String>>,
     /// Its triggers without duplicates; empty if all are unknown, which was reported.
     pub on: Vec<Trigger>,
@@ -32,7 +30,6 @@ pub struct DeclaredHook {
     pub timeout: Option<Duration>,
 }
 
-/// The kinds of a `<hook>`.
 #[derive(Clone, Debug)]
 pub enum HookKind {
     /// A test plug-in.

@@ -30,7 +30,6 @@ pub(crate) fn parse_verdict(word: &str) -> Result<Verdict, Box<Diagnostic>> {
     Err(suggest(problem, word, known.into_iter()).into())
 }
 
-/// Parses `2027-01-31`.
 pub(crate) fn parse_day(text: &str) -> Option<Date> {
     // jiff also accepts other forms, such as `20270131`.
     text.parse::<Date>().ok().filter(|day| day.to_string() == text)

@@ -17,7 +17,6 @@ pub struct DeclaredMatrix {
     pub excludes: Vec<MatrixExclude>,
 }
 
-/// A `<matrix>`.
 #[derive(Clone, Debug)]
 pub enum MatrixDimension {
     /// One parameter and its values.

@@ -37,7 +37,6 @@ enum Markup {
     Tag,
 }
 
-/// Scans the text.
 pub(super) fn scan(text: &str) -> Scan<'_> {
     let mut found = Scan::default();
     let mut blank = Vec::new();

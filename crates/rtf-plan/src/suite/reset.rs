@@ -6,7 +6,6 @@ use super::reader::ElementReader;
 use super::schema::{self, check};
 use super::{DeclaredReset, HookKind, Span, Spanned, command, hook, test};
 
-/// Reads the `<reset>` of a fixture.
 pub(super) fn read(reader: &mut ElementReader<'_>, fixture: Node<'_, '_>) -> Option<DeclaredReset> {
     let mut seen: Option<Span> = None;
     let mut reset = None;

@@ -13,7 +13,6 @@ use crate::wording::{quoted, suggest};
 pub struct ElementSchema {
     /// The element's name in messages.
     pub name: &'static str,
-    /// Its attributes.
     pub attributes: &'static [&'static str],
     /// Its child elements.
     pub elements: &'static [&'static str],
@@ -21,7 +20,6 @@ pub struct ElementSchema {
     pub text: bool,
 }
 
-/// `<suite>`.
 pub(super) const SUITE: ElementSchema = ElementSchema {
     name: "suite",
     attributes: &[
@@ -64,7 +62,6 @@ pub(super) const SUITE: ElementSchema = ElementSchema {
     text: false,
 };
 
-/// `<test>`.
 pub(super) const TEST: ElementSchema = ElementSchema {
     name: "test",
     attributes: &[
@@ -99,7 +96,6 @@ pub(super) const TEST: ElementSchema = ElementSchema {
     text: true,
 };
 
-/// `<learn>`.
 pub(super) const LEARN: ElementSchema = ElementSchema {
     name: "learn",
     attributes: &["measurement", "min-runs", "sigma", "limits", "since"],
@@ -165,14 +161,12 @@ pub(super) const ATTACHED: ElementSchema = ElementSchema {
     text: false,
 };
 
-/// `<signals>`.
 pub(super) const SIGNALS: ElementSchema = ElementSchema {
     name: "signals",
     attributes: &["time", "wait"],
     elements: &["command", "signal"],
     text: false,
 };
-/// `<signal>` in `<signals>`.
 pub(super) const COLUMN: ElementSchema = leaf("signal", &["name", "unit"]);
 /// `<signal>` with its own source.
 pub(super) const SIGNAL: ElementSchema = ElementSchema {
@@ -184,11 +178,9 @@ pub(super) const SIGNAL: ElementSchema = ElementSchema {
     elements: &["command"],
     text: false,
 };
-/// `<monitor>`.
 pub(super) const MONITOR: ElementSchema =
     ElementSchema { name: "monitor", attributes: &["name", "severity"], elements: &[], text: true };
 
-/// `<envelope>`.
 pub(super) const ENVELOPE: ElementSchema = leaf("envelope", &["file"]);
 /// `<fault>`. `fault.rs` checks which attributes its kind has.
 pub(super) const FAULT: ElementSchema = leaf(
@@ -230,13 +222,10 @@ pub(super) const HOOK: ElementSchema = ElementSchema {
     text: true,
 };
 
-/// `<env>`.
 pub(super) const ENV: ElementSchema = leaf("env", &["name", "value"]);
-/// `<matrix>`.
 pub(super) const MATRIX: ElementSchema = leaf("matrix", &["name", "values", "values-from"]);
 /// `<matrix-exclude>`, whose attributes are the parameters of its test.
 pub(super) const MATRIX_EXCLUDE: ElementSchema = leaf("matrix-exclude", &[]);
-/// `<ready>`.
 pub(super) const READY: ElementSchema = leaf(
     "ready",
     &[
@@ -255,7 +244,6 @@ pub(super) const READY: ElementSchema = leaf(
         "every",
     ],
 );
-/// `<alive>`.
 pub(super) const ALIVE: ElementSchema = leaf(
     "alive",
     &[
@@ -274,12 +262,9 @@ pub(super) const ALIVE: ElementSchema = leaf(
         "every",
     ],
 );
-/// `<provide>`.
 pub(super) const PROVIDE: ElementSchema =
     leaf("provide", &["name", "log", "file", "command", "secret"]);
-/// `<stop>`.
 pub(super) const STOP: ElementSchema = leaf("stop", &["signal", "grace", "exit-codes"]);
-/// `<reset>`.
 pub(super) const RESET: ElementSchema = ElementSchema {
     name: "reset",
     attributes: &["command", "type", "param", "timeout", "restart-every"],

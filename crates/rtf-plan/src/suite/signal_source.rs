@@ -33,7 +33,6 @@ pub(super) fn read_group(
 /// The sources of a `<signal>`.
 const SOURCES: &str = "a source: a `<command>`, `ros`, `ros2`, `yarp`, `file` and `topic`, `test`, or `fixture` and `of`";
 
-/// The attributes that are sources.
 const SOURCE_ATTRIBUTES: [&str; 6] = ["ros", "ros2", "yarp", "file", "test", "fixture"];
 
 /// The syntax of values in messages. `fixtures/rtf_fixtures/signal_fields.py` has the same.

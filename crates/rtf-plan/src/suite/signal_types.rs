@@ -15,7 +15,6 @@ pub struct DeclaredSource {
     pub signals: Vec<DeclaredSignal>,
 }
 
-/// The kinds of sources.
 #[derive(Clone, Debug)]
 pub enum DeclaredSourceKind {
     /// A program that writes a line for each sample.
@@ -29,7 +28,6 @@ pub enum DeclaredSourceKind {
     },
     /// A value in the messages of a topic or port: `/joint_states.position[elbow]`.
     Topic {
-        /// The middleware.
         middleware: SignalMiddleware,
         /// The topic or port, and the value.
         field: Spanned<String>,
@@ -47,7 +45,6 @@ pub enum DeclaredSourceKind {
     Fixture {
         /// The name of the fixture.
         name: Spanned<String>,
-        /// The quantity.
         quantity: ProcessQuantity,
         /// The interval.
         every: Option<Duration>,
@@ -57,11 +54,8 @@ pub enum DeclaredSourceKind {
 /// The middleware of a topic or port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SignalMiddleware {
-    /// ROS 1.
     Ros,
-    /// ROS 2.
     Ros2,
-    /// YARP.
     Yarp,
 }
 
@@ -71,16 +65,13 @@ impl SignalMiddleware {
         [("ros", Self::Ros), ("ros2", Self::Ros2), ("yarp", Self::Yarp)];
 }
 
-/// A `<signal>`.
 #[derive(Clone, Debug)]
 pub struct DeclaredSignal {
-    /// The name.
     pub name: Spanned<String>,
     /// The unit; at its attribute, or at the name without one.
     pub unit: Spanned<String>,
 }
 
-/// An `<envelope>`.
 #[derive(Clone, Debug)]
 pub struct DeclaredEnvelope {
     /// The position of the tag.
@@ -89,15 +80,12 @@ pub struct DeclaredEnvelope {
     pub file: Spanned<String>,
 }
 
-/// A `<monitor>`.
 #[derive(Clone, Debug)]
 pub struct DeclaredMonitor {
     /// The position of the tag.
     pub span: Span,
-    /// The name.
     pub name: Spanned<String>,
     /// What a violation means.
     pub severity: FindingSeverity,
-    /// The formula.
     pub formula: Spanned<String>,
 }

@@ -38,7 +38,6 @@ impl Span {
 /// A value and its position in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Spanned<T> {
-    /// The value.
     pub value: T,
     /// Its position.
     pub span: Span,
@@ -130,7 +129,6 @@ pub struct SourceMap {
 }
 
 impl SourceMap {
-    /// Adds a text.
     pub fn add(&mut self, source: Arc<SourceText>) {
         self.files.push(source);
     }

@@ -16,9 +16,7 @@ use super::{
 /// The defaults that a suite declares for its tests.
 #[derive(Clone, Copy, Default)]
 pub(super) struct TestDefaults {
-    /// The limits.
     pub limits: DeclaredLimits,
-    /// The settings.
     pub settings: TestSettings,
 }
 

@@ -16,7 +16,6 @@ use super::{
 pub struct DeclaredSuite {
     /// The position of the `<suite>` tag.
     pub span: Span,
-    /// The name.
     pub name: Option<Spanned<String>>,
     /// Environment variables of all its processes, in order.
     pub env: Vec<(String, String)>,
@@ -51,7 +50,6 @@ pub struct DeclaredSuite {
 pub struct SuiteSettings {
     /// The description, white space folded.
     pub description: String,
-    /// The environment string.
     pub environment: String,
     /// The limit for the whole suite, including set-up and tear-down of fixtures.
     pub timeout: Option<Duration>,
@@ -148,12 +146,10 @@ pub enum DeclaredMiddleware {
     Shared,
 }
 
-/// A `<test>`.
 #[derive(Clone, Debug)]
 pub struct DeclaredTest {
     /// The position of the tag.
     pub span: Span,
-    /// The name.
     pub name: Option<Spanned<String>>,
     /// Its former name.
     pub was: Option<String>,
@@ -175,7 +171,6 @@ pub struct DeclaredTest {
     pub monitors: Vec<DeclaredMonitor>,
     /// The faults of this test.
     pub faults: Vec<DeclaredFault>,
-    /// Its known failure.
     pub known_failure: Option<Box<DeclaredKnownFailure>>,
     /// The values with which it runs; `None` for a test without a matrix.
     pub matrix: Option<Box<DeclaredMatrix>>,
@@ -207,7 +202,6 @@ pub enum LearnedSides {
     Low,
     /// Only the largest accepted value.
     High,
-    /// Both.
     Both,
 }
 
@@ -220,7 +214,6 @@ pub struct DeclaredCases {
     pub case_timeout: Option<Span>,
     /// The `isolation`, unless it is `process`.
     pub isolation: Option<Spanned<TestIsolation>>,
-    /// The `fork`.
     pub fork: Option<Spanned<ForkPoint>>,
 }
 
@@ -303,11 +296,8 @@ pub struct Retries {
 /// The limits of tests; `None` for the default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct DeclaredLimits {
-    /// For loading.
     pub load: Option<Duration>,
-    /// For `setup`.
     pub setup: Option<Duration>,
-    /// For `run`.
     pub run: Option<Duration>,
     /// For `tearDown`.
     pub teardown: Option<Duration>,

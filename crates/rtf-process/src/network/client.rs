@@ -44,7 +44,6 @@ pub struct Network {
 }
 
 impl Network {
-    /// Its namespaces.
     pub fn namespaces(&self) -> &Arc<Namespaces> {
         &self.namespaces
     }

@@ -18,9 +18,7 @@ use crate::tree;
 /// An attached fixture.
 #[derive(Debug)]
 pub struct AttachedJob {
-    /// Its id.
     pub host: HostId,
-    /// Its probes.
     pub probes: Probes,
     /// The working directory and the environment of probe commands.
     pub launch: Launch,

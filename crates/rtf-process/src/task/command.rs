@@ -15,7 +15,6 @@ use crate::tree::SignalReach;
 pub enum ProcessCommand {
     /// Assign a further request to a shared host.
     Assign(Assignment),
-    /// Send a request.
     Send(Option<u64>, Request),
     /// Send nothing more.
     CloseChannel,

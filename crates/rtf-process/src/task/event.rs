@@ -11,7 +11,6 @@ pub struct HostId(pub u64);
 /// The queue of events of all processes of one owner.
 pub type EventSender = mpsc::Sender<(HostId, ProcessEvent)>;
 
-/// An event of a process.
 #[derive(Debug)]
 pub enum ProcessEvent {
     /// It could not be started.
@@ -22,7 +21,6 @@ pub enum ProcessEvent {
     Attached(Result<Attachment, String>),
     /// It replied to a request.
     Replied(u64, Reply<serde_json::Value>),
-    /// It violated the protocol.
     ProtocolViolated(String),
     /// Its channel is not read for a while, because too much of its output waits to be
     /// reported: its deadlines are paused.
@@ -33,7 +31,6 @@ pub enum ProcessEvent {
     Printed(Stream, Vec<u8>),
     /// A value of a process was read.
     ValueRead {
-        /// Its name.
         name: String,
         /// Its text.
         value: String,
@@ -46,7 +43,6 @@ pub enum ProcessEvent {
     ProbeFailed(String),
     /// The resources that it and everything below it use.
     ResourcesMeasured {
-        /// The usage.
         usage: Usage,
         /// The number of tests served, for a shared host.
         tests_served: Option<u32>,

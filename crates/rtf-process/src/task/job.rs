@@ -30,7 +30,6 @@ pub trait ProcessOwner: fmt::Debug + Send + Sync {
     /// The process was started, but no request was sent yet.
     fn process_started(&self, pid: i32, streams: &[(ProcessStream, BorrowedFd<'_>)]);
 
-    /// The process has ended.
     fn process_ended(&self, pid: i32);
 
     /// The requests of the process wait until a debugger is attached.
@@ -43,9 +42,7 @@ pub trait ProcessOwner: fmt::Debug + Send + Sync {
 /// A process to run.
 #[derive(Debug)]
 pub struct ProcessJob {
-    /// Its id.
     pub host: HostId,
-    /// Its owner.
     pub owner: Arc<dyn ProcessOwner>,
     /// How to start it, unless it was started ahead of time.
     pub launch: Launch,

@@ -67,7 +67,6 @@ pub async fn await_ending_of(left: impl Fn() -> Vec<i32>) {
     }
 }
 
-/// The orphans of a scope.
 pub fn orphans_of(scope: &str) -> Vec<i32> {
     let belongs = |pid: &i32| scope_of(*pid).is_some_and(|found| found == scope.as_bytes());
     orphans().filter(belongs).collect()

@@ -19,7 +19,6 @@ pub(crate) use totals::CaseTotals;
 /// The reason of a case that was running when the run ended.
 const CUT_SHORT: &str = "the run ended before the case did";
 
-/// The cases of a test.
 #[derive(Debug)]
 pub(crate) struct TestCases<'r> {
     /// In the order in which they started; those that did not run are last.
@@ -30,7 +29,6 @@ pub(crate) struct TestCases<'r> {
     problems: HashMap<(usize, CaseId), CaseProblems<'r>>,
 }
 
-/// The result of one case.
 #[derive(Debug)]
 pub(crate) struct CaseResult<'r> {
     /// Its name, after those of the cases that contain it.

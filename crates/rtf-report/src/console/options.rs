@@ -42,7 +42,6 @@ impl TestCommands {
     }
 }
 
-/// Options of the console.
 pub struct ConsoleOptions {
     /// How much is shown during the run.
     pub verbosity: Verbosity,

@@ -36,7 +36,6 @@ impl ConsoleLines {
         Self { everything: Some(everything), ..Self::default() }
     }
 
-    /// A line as it is.
     pub fn line(&mut self, text: &str) {
         self.end_entry();
         self.push(text);

@@ -12,9 +12,7 @@ use crate::{escape, words};
 /// The question that the person at this terminal can answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AskedHere {
-    /// The test.
     pub test: TestId,
-    /// The question.
     pub question: Question,
 }
 

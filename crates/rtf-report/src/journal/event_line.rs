@@ -75,7 +75,6 @@ pub struct EventHeader {
     pub seq: u64,
     /// When it happened, in microseconds since the run started.
     pub at: u64,
-    /// Its kind.
     #[serde(rename = "type")]
     pub kind: Box<str>,
     source: Option<Source>,

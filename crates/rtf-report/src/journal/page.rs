@@ -23,7 +23,6 @@ impl WriteBuffer {
         Self { bytes: vec![0; SIZE], used: 0, sealer: LineSealer::default() }
     }
 
-    /// The lines.
     pub fn lines(&self) -> &[u8] {
         &self.bytes[..self.used]
     }

@@ -23,7 +23,6 @@ const FLAKY: &str = "it is flaky: it passed only after a retry";
 /// The reason of a test that had not started when the run ended.
 const NOT_BEGUN: &str = "the run ended before the test started";
 
-/// The test case of a test.
 pub(super) fn of(record: &Record, test: &TestRecord, folder: Option<&Path>) -> TestCase {
     let mut case = TestCase::new(text(&test.plan.name), status(record, test));
     let suite = record.suites.get(test.plan.suite.index()).map_or("", |s| &s.plan.name);

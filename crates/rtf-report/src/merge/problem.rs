@@ -52,7 +52,6 @@ pub enum MergeProblem {
     /// A run of episodes is there twice.
     #[error("`{first}` and `{second}` are the same run")]
     SameRun {
-        /// The first one.
         first: String,
         /// The other one.
         second: String,

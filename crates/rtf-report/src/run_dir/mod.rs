@@ -40,7 +40,6 @@ pub struct RunDir {
 }
 
 impl RunDir {
-    /// The path of the journal.
     #[must_use]
     pub fn journal(&self) -> PathBuf {
         self.path.join(JOURNAL)

@@ -34,7 +34,6 @@ pub struct TapStream {
 }
 
 impl TapStream {
-    /// Writes to `out`.
     #[must_use]
     pub fn new(out: Box<dyn Write + Send>) -> Self {
         Self { stream: LineStream::new("TAP", out), walk: Walk::default() }

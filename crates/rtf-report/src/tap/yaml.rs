@@ -29,7 +29,6 @@ impl<'a> Yaml<'a> {
         self.text.push('\n');
     }
 
-    /// `key: 1.5`.
     pub fn number(&mut self, key: &str, value: f64) {
         self.line(&format!("{key}: {value}"));
     }

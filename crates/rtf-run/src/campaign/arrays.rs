@@ -87,12 +87,10 @@ impl CampaignArray {
         CampaignDir::open(dir.unwrap_or(Path::new("")))
     }
 
-    /// The worker that is a task.
     pub fn worker(&self, task: u32) -> u32 {
         self.stored.first_worker + task - 1
     }
 
-    /// The tasks.
     pub fn tasks(&self) -> impl Iterator<Item = u32> + use<> {
         1..=self.stored.tasks
     }

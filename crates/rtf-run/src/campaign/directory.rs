@@ -38,7 +38,6 @@ const LIST: &str = "list.jsonl";
 /// What a campaign runs. Paths are absolute.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Description {
-    /// The name.
     pub name: String,
     /// The campaign file.
     pub file: PathBuf,
@@ -145,7 +144,6 @@ impl CampaignDir {
         runs(&self.worker(worker))
     }
 
-    /// The list of episodes.
     pub fn episodes(&self) -> Result<EpisodeList, Failure> {
         read_list(&self.path.join(EPISODES))
     }

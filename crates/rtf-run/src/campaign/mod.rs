@@ -23,7 +23,6 @@ pub use stream::EpisodeStream;
 
 /// A campaign file without errors, and its episodes.
 pub struct LoadedCampaign {
-    /// The name.
     pub name: String,
     /// The suite file.
     pub suite: PathBuf,
@@ -36,7 +35,6 @@ pub struct LoadedCampaign {
 }
 
 impl LoadedCampaign {
-    /// Prints the warnings.
     pub fn print_warnings(&self) -> Result<(), Failure> {
         diagnostics::print(&self.warnings, &self.sources)
     }
@@ -135,7 +133,6 @@ pub fn read_ledger(
     ledger
 }
 
-/// Reads a list of episodes.
 pub fn read_list(file: &Path) -> Result<EpisodeList, Failure> {
     let name = file.display();
     let text = std::fs::read_to_string(file)

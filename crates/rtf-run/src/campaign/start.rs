@@ -16,7 +16,6 @@ use super::LoadedCampaign;
 use crate::origin;
 use crate::revision::RevisionQuery;
 
-/// The start of a campaign.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CampaignStart {
     /// The identity, and the machine.

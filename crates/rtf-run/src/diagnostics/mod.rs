@@ -8,7 +8,6 @@ use rtf_plan::suite::SourceMap;
 use crate::error::Failure;
 use crate::terminal;
 
-/// Prints diagnostics.
 pub fn print(diagnostics: &[Diagnostic], sources: &SourceMap) -> Result<(), Failure> {
     // The stream removes the colours if they are not wanted.
     terminal::stderr(|err| render::write(err, diagnostics, sources, true))

@@ -49,7 +49,6 @@ pub fn default_branch(store: &Store, dir: &Path) -> Result<Option<String>, Store
 /// Where runs are imported when they end.
 #[derive(Clone, Debug)]
 pub struct HistoryTarget {
-    /// The database.
     pub database: Location,
     /// The results directory, in which earlier runs may be missing in the database.
     pub results: PathBuf,

@@ -27,7 +27,6 @@ use crate::revision::RevisionQuery;
 pub use failed_cases::of_test as failed_cases;
 pub use past_tests::PastQuery;
 
-/// A run.
 pub struct RunRequest {
     pub tests: TestsRequest,
     pub results: PathBuf,

@@ -92,7 +92,6 @@ impl AccessLog {
 /// A client has sent a wrong token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WrongToken {
-    /// The client.
     pub client: IpAddr,
     /// Recent number of wrong tokens of this client.
     pub count: u64,

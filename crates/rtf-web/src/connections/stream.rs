@@ -26,7 +26,6 @@ pub struct Limited {
 }
 
 impl Limited {
-    /// A new connection.
     #[must_use]
     pub fn new(stream: TcpStream, place: ConnectionSlot, limits: &Limits) -> Self {
         let due = Instant::now() + limits.head;

@@ -20,7 +20,6 @@ type AttemptKey = (TestId, u32, u32);
 /// The name and media type of an attachment.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AttachmentInfo {
-    /// Its name.
     pub name: Box<str>,
     /// Its media type; empty when the test gave none.
     pub media_type: Box<str>,

@@ -15,7 +15,6 @@ pub struct LineReader {
     end: u64,
 }
 
-/// One line.
 #[derive(Debug)]
 pub struct IndexedLine<'a> {
     /// The text, without its line break.

@@ -28,7 +28,6 @@ const CURRENT_AMONG: usize = 20;
 /// A run with its index.
 #[derive(Debug)]
 pub struct Run {
-    /// Its name.
     pub name: String,
     /// The results directory.
     results: PathBuf,

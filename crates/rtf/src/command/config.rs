@@ -17,7 +17,6 @@ use super::VerbResult;
 use crate::cli::ConfigArgs;
 use crate::request::config::{absolute, request};
 
-/// The column of comments.
 const COMMENT_COLUMN: usize = 44;
 
 /// Prints the effective settings.

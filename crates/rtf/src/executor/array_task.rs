@@ -13,7 +13,6 @@ use crate::cli::{Annotations, ClusterArgs, RunArgs};
 /// A task of a submission: `3:0:/shared/submission`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ArrayTask {
-    /// Its number, from 1.
     pub number: u32,
     /// How often it was run before.
     attempt: u32,

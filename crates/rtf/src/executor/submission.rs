@@ -19,7 +19,6 @@ const DIR: &str = ".submissions";
 /// The file with [`Stored`].
 const STORED: &str = "submission.json";
 
-/// A submission.
 #[derive(Debug)]
 pub struct Submission {
     /// Its directory, absolute.

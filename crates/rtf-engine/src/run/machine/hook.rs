@@ -13,7 +13,6 @@ use crate::fixture_values::FixtureValues;
 use crate::hook::{ASKED, HookJudgement, RUN_REQUEST, request, trigger_variables};
 use rtf_plan::plan::{HookBody, HookPlan, SuitePlan};
 
-/// A triggered hook.
 #[derive(Clone, Debug)]
 pub struct TriggeredHook {
     /// Into the suite's list.

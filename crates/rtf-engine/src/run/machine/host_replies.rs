@@ -2,7 +2,6 @@
 
 use rtf_model::protocol::{Answer, Initialized, PROTOCOL_VERSION, Reply, RpcError};
 
-/// Parses the reply to `initialize`.
 pub fn parse_initialized(reply: Reply<serde_json::Value>) -> Result<Initialized, String> {
     let value = match reply {
         Reply::Result(value) => value,

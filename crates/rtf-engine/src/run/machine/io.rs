@@ -16,12 +16,10 @@ pub use rtf_process::probe::ProbeSelection;
 pub use rtf_process::task::{HostId, ProcessEvent};
 pub use rtf_process::tree::SignalReach;
 
-/// An input.
 #[derive(Debug)]
 pub enum Input {
     /// The suite starts; once. Only `Stop` and `Skip` may come earlier.
     Start,
-    /// An event of a process.
     Host(HostId, ProcessEvent),
     /// A deadline has passed.
     Deadline(Deadline),
@@ -46,7 +44,6 @@ pub enum Deadline {
     Suite,
     /// The limit of a stop request.
     Shutdown,
-    /// A timer of a test.
     Test(TestId, TestTimer),
     /// A timer of a fixture, by its index in the suite's plan.
     Fixture(usize, FixtureTimer),
@@ -58,7 +55,6 @@ pub enum Deadline {
     SharedHost,
 }
 
-/// A timer of a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum TestTimer {
     /// The limit of the phase, or of a step that stops it.
@@ -69,7 +65,6 @@ pub enum TestTimer {
     Question(u32),
 }
 
-/// A timer of a fixture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum FixtureTimer {
     /// The limit of set-up or tear-down, or of a step that stops it.
@@ -93,7 +88,6 @@ pub enum FixtureTimer {
 /// How to start a process.
 #[derive(Clone, Debug)]
 pub struct StartRequest {
-    /// The program.
     pub what: Program,
     /// Environment variables; later ones win.
     pub env: Vec<(String, String)>,
@@ -175,7 +169,6 @@ pub enum Effect {
     CheckAlive(HostId, ProbeSelection),
     /// Set a deadline, as a time of the run.
     SetDeadline(Deadline, Duration),
-    /// Clear a deadline.
     ClearDeadline(Deadline),
     /// An operator is asked: the limit and the `slow` limit of the test are paused.
     PauseLimits(TestId),

@@ -44,7 +44,6 @@ pub struct SuiteRequests {
     pub soak_until: Option<Duration>,
 }
 
-/// Runs a suite.
 pub async fn run_suite(
     prepared: &PreparedSuite<'_>,
     context: &RunContext,

@@ -11,7 +11,6 @@ pub enum Printed {
     Value(String, String),
     /// A file, with its name and media type.
     File {
-        /// Its name.
         name: String,
         /// Its path; relative to the working directory.
         path: String,

@@ -24,15 +24,12 @@ pub struct CTestCase {
     pub location: Option<(String, u32)>,
     /// Where it runs.
     pub working_dir: Option<PathBuf>,
-    /// `ENVIRONMENT`
     pub environment: Vec<String>,
     /// `ENVIRONMENT_MODIFICATION`
     pub environment_changes: Vec<String>,
-    /// `TIMEOUT`
     pub timeout: Option<Duration>,
     /// `TIMEOUT_AFTER_MATCH`: the limit after an expression has matched.
     pub timeout_after_match: Option<(Duration, Vec<Regex>)>,
-    /// `WILL_FAIL`
     pub will_fail: bool,
     /// `PASS_REGULAR_EXPRESSION`, with the expressions as written.
     pub pass: Vec<(String, Regex)>,
@@ -42,9 +39,7 @@ pub struct CTestCase {
     pub skip: Vec<(String, Regex)>,
     /// `SKIP_RETURN_CODE`
     pub skip_code: Option<i32>,
-    /// `DISABLED`
     pub disabled: bool,
-    /// `LABELS`
     pub labels: Vec<String>,
     /// `DEPENDS`: names of tests.
     pub depends: Vec<String>,
@@ -54,7 +49,6 @@ pub struct CTestCase {
     pub cleans_up: Vec<String>,
     /// `FIXTURES_REQUIRED`
     pub requires: Vec<String>,
-    /// `REQUIRED_FILES`
     pub required_files: Vec<String>,
     /// `ATTACHED_FILES`
     pub attached: Vec<String>,

@@ -42,7 +42,6 @@ pub(super) enum Attachment {
     File { path: String, media_type: String },
 }
 
-/// An event.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum TestEvent {
     Started(Started),

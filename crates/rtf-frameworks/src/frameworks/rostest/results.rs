@@ -27,7 +27,6 @@ pub struct TestResult {
     pub class: String,
     /// Its method.
     pub name: String,
-    /// Its problems.
     pub problems: Vec<Problem>,
     /// Why it was skipped.
     pub skipped: Option<String>,
@@ -38,7 +37,6 @@ pub struct TestResult {
 pub struct Problem {
     /// An error, not a failure.
     pub is_error: bool,
-    /// Its text.
     pub text: String,
     /// File and line.
     pub location: Option<(String, u32)>,

@@ -23,7 +23,6 @@ pub enum TapLine {
     Other,
 }
 
-/// A plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Plan {
     /// The number of test lines.
@@ -37,11 +36,9 @@ pub struct Plan {
 pub struct TestPoint {
     /// `ok`, not `not ok`.
     pub ok: bool,
-    /// Its number.
     pub number: Option<u64>,
     /// Its description, unescaped; may be empty.
     pub description: String,
-    /// Its directive.
     pub directive: Option<Directive>,
     /// It ends with `{`: its subtest follows in braces.
     pub opens_block: bool,

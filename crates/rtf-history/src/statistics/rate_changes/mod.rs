@@ -37,7 +37,6 @@ impl Counts {
         self.passed + self.failed
     }
 
-    /// The sum.
     #[must_use]
     pub fn sum(all: &[Self]) -> Self {
         all.iter().fold(Self::default(), |sum, it| Self {
@@ -47,7 +46,6 @@ impl Counts {
     }
 }
 
-/// A change of the rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateChange {
     /// The first counts after the change, as an index into the slice that was searched.

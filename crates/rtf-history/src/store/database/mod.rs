@@ -17,7 +17,6 @@ use std::error::Error as _;
 
 use ::postgres::error::SqlState;
 
-/// An error of a database.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum DatabaseError {
     #[error(transparent)]

@@ -31,7 +31,6 @@ const MAX_FAILED_STARTS: u32 = 3;
 
 /// Why episodes do not run any more.
 pub enum Ended {
-    /// A signal.
     Signal(i32),
     /// A hook of a worker failed.
     HookFailed,

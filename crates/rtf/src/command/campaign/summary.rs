@@ -15,9 +15,7 @@ use rtf_run::{exit, terminal};
 /// Why a campaign ended before its claim was decided and all episodes had run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EarlyEnd {
-    /// A signal.
     Signal(i32),
-    /// A hook failed.
     HookFailed,
     /// Only results that are the bench's.
     BenchBroken,

@@ -22,13 +22,11 @@ pub fn seconds(seconds: f64) -> String {
     format_duration(Duration::try_from_secs_f64(seconds).unwrap_or_default())
 }
 
-/// A number with its unit.
 pub fn number(value: f64, unit: &str) -> String {
     let number = format_rounded(value);
     if unit.is_empty() { number } else { format!("{number} {}", escape::line(unit)) }
 }
 
-/// A rate in percent.
 pub fn percent(rate: f64) -> String {
     format!("{:.0} %", rate * 100.0)
 }

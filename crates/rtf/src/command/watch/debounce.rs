@@ -14,7 +14,6 @@ pub const QUIET: Duration = Duration::from_millis(200);
 /// How long a removed file may take to return.
 pub const RETURN_LIMIT: Duration = Duration::from_secs(2);
 
-/// A change of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileChange {
     /// A process created it and has it open.
@@ -27,7 +26,6 @@ pub enum FileChange {
     Replaced,
     /// Its attributes changed, not its content.
     Attributes,
-    /// It was removed.
     Removed,
 }
 
@@ -45,7 +43,6 @@ pub struct Debounce {
 }
 
 impl Debounce {
-    /// Records a change.
     pub fn record(&mut self, file: &Path, change: FileChange, now: Duration) {
         self.last_change = now;
         let state = self.files.entry(file.to_owned()).or_default();

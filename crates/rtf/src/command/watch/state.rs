@@ -40,7 +40,6 @@ pub enum WatchAction {
 }
 
 impl WatchState {
-    /// A file changed.
     pub fn files_changed(&mut self) -> WatchAction {
         match self {
             Self::Waiting => self.enter(Self::Running, WatchAction::Start),

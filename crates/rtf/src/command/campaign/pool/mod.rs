@@ -40,16 +40,12 @@ pub trait Pool {
     async fn stop(&mut self, signal: i32);
 }
 
-/// An event of a worker.
 #[derive(Debug)]
 pub enum WorkerEvent {
-    /// The result of an episode.
     Result(EpisodeLine),
-    /// The worker has ended.
     Ended(EndedWorker),
 }
 
-/// A worker that has ended.
 #[derive(Debug)]
 pub struct EndedWorker {
     /// Its number, and its episodes without a result.

@@ -8,7 +8,6 @@ use rtf_history::entry::RunEnd;
 use rtf_model::format_rounded;
 use rtf_report::format_count;
 
-/// A gate.
 pub struct GateWords {
     pub passed: bool,
     pub title: String,
