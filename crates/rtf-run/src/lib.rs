@@ -26,6 +26,7 @@ pub mod finish;
 pub mod formats;
 pub mod guarded;
 pub mod history;
+pub mod merge;
 pub mod operator;
 pub mod origin;
 pub mod outputs;

@@ -4,7 +4,6 @@
 
 mod cli;
 mod command;
-mod executor;
 mod request;
 mod spawn_self;
 mod testrunner;

@@ -6,7 +6,7 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 use rtf_plan::suite::parse_duration;
 
-use crate::executor::ArrayTask;
+use rtf_executor::ArrayTask;
 
 const EXECUTOR: &str = "Executor";
 

@@ -3,26 +3,31 @@
 use std::os::fd::AsFd;
 
 use clap::ArgMatches;
+use rtf_executor::Executor;
+use rtf_plan::select::{Shard, ShardBy};
 use rtf_run::error::Failure;
 use rtf_run::pipeline::{self, Invocation};
 use rtf_run::request::{OutputRequest, RunRequest};
 
 use super::{VerbResult, list};
-use crate::cli::{ExecutorOption, ListFormat, RunVerbArgs};
-use crate::executor;
-use crate::request::{self, config};
+use crate::cli::{ListFormat, RunVerbArgs};
+use crate::request::{self, cluster, config};
 
 /// Runs tests, here or in a cluster.
 pub fn run(mut args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
     if args.executor.resume {
-        return executor::resume(&args);
+        let (submission, request) = cluster::resumed(&args.run)?;
+        return rtf_executor::supervise(&submission, &request);
     }
     config::fill_run(&mut args.run, matches)?;
-    executor::refuse_unused(&args.executor.cluster)?;
+    let options = cluster::cluster(&args.executor.cluster)?;
     match &args.executor.array_task {
-        Some(task) => task.apply(&mut args.run, &args.executor.cluster)?,
-        None if args.executor.cluster.executor != ExecutorOption::Local => {
-            return executor::run(&args);
+        Some(task) => cluster::fill_task(task, &mut args.run, &options)?,
+        None if options.executor != Executor::Local => {
+            cluster::refuse_local_options(&args)?;
+            let shard = |count| Some(Shard { index: 1, count, by: ShardBy::Hash });
+            let tests = |count| request::tests_in_shard(&args.run.input, shard(count));
+            return rtf_executor::run(&options, &cluster::collect(&args.run)?, tests);
         }
         None => {}
     }

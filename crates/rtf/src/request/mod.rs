@@ -1,6 +1,7 @@
 //! Arguments → request: what the user asks for, with the values of `rtf.toml` and of
 //! past runs filled in. Everything after this stage reads the request only.
 
+pub mod cluster;
 pub mod config;
 mod inputs;
 

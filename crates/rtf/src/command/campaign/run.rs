@@ -12,6 +12,8 @@ use clap::ArgMatches;
 use jiff::Timestamp;
 use rtf_campaign::Ledger;
 use rtf_engine::signal::SignalListener;
+use rtf_executor;
+use rtf_executor::Executor;
 use rtf_history::entry;
 use rtf_plan::plan::Plan;
 use rtf_report::escape;
@@ -27,9 +29,8 @@ use rtf_run::{plan, terminal};
 use super::coordinator::{CampaignEnd, Coordinator, episodes_of};
 use super::pool::{ClusterPool, LocalPool};
 use super::summary::{self, EarlyEnd};
-use crate::cli::{CampaignRunArgs, ExecutorOption, ProfileArgs};
+use crate::cli::{CampaignRunArgs, ProfileArgs};
 use crate::command::VerbResult;
-use crate::executor;
 use crate::request::{self, config};
 
 /// How often the end of the workers of a killed campaign is checked.
@@ -209,15 +210,14 @@ fn describe(
 
 /// The jobs, if the episodes are to run in a cluster.
 fn jobs(args: &CampaignRunArgs, plan: &Plan) -> Result<Option<CampaignJobs>, Failure> {
-    let cluster_args = &args.cluster;
-    executor::refuse_unused(cluster_args)?;
-    if cluster_args.executor == ExecutorOption::Local {
+    let options = request::cluster::cluster(&args.cluster)?;
+    if options.executor == Executor::Local {
         return Ok(None);
     }
-    refuse_workers(args, &cluster_args.executor.to_string())?;
-    let shards = executor::shards(cluster_args)?;
+    refuse_workers(args, &options.executor.to_string())?;
+    let shards = rtf_executor::shards(&options)?;
     let cluster =
-        executor::cluster(cluster_args, plan, &args.results.results, args.shutdown_timeout)?;
+        rtf_executor::cluster(&options, plan, &args.results.results, args.shutdown_timeout)?;
     Ok(cluster.map(|cluster| CampaignJobs { shards, cluster }))
 }
 

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use rtf_campaign::EpisodeList;
 use rtf_engine::signal::SignalListener;
+use rtf_executor::EXIT_CODE;
 use rtf_run::campaign::arrays::CampaignArray;
 use rtf_run::campaign::directory::write;
 use rtf_run::campaign::read_list;
@@ -14,7 +15,6 @@ use rtf_run::exit;
 use super::worker;
 use crate::cli::CampaignTaskArgs;
 use crate::command::{VerbResult, watch};
-use crate::executor::EXIT_CODE;
 use crate::spawn_self;
 
 /// SIGTERM.

@@ -7,6 +7,10 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use rtf_cluster::{Job, JobArray};
+use rtf_executor::follow::{PollTimer, warn_once};
+use rtf_executor::stop::{CANCELLED, Stop};
+use rtf_executor::task_progress::TaskProgress;
+use rtf_executor::{EXIT_CODE, cluster_failure, last_attempt, print_manifest};
 use rtf_model::Episode;
 use rtf_run::campaign::arrays::CampaignArray;
 use rtf_run::campaign::directory::{CampaignDir, CampaignJobs};
@@ -17,10 +21,6 @@ use rtf_run::{exit, terminal};
 use super::super::assignment::Assignment;
 use super::super::worker;
 use super::{EndedWorker, Pool, WorkerEvent};
-use crate::executor::follow::{PollTimer, warn_once};
-use crate::executor::stop::{CANCELLED, Stop};
-use crate::executor::task_progress::TaskProgress;
-use crate::executor::{EXIT_CODE, cluster_failure, last_attempt, print_manifest};
 
 /// SIGTERM.
 const TERM: i32 = 15;

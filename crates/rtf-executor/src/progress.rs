@@ -12,8 +12,8 @@ use rtf_report::run_dir::JOURNAL;
 use rtf_run::diagnostics::count;
 use rtf_run::terminal;
 
-use super::submission::Submission;
-use super::task_progress::TaskProgress;
+use crate::submission::Submission;
+use crate::task_progress::TaskProgress;
 
 /// Prints the progress when it has changed.
 pub struct Progress<'a> {

@@ -1,13 +1,13 @@
-//! `rtf run --executor slurm|kubernetes`: submits shards as tasks of a job, follows them, collects
-//! their runs and merges them; `spec/executors.md`. Campaigns use the same jobs.
+//! A run that is split over the nodes of a cluster: shards are submitted as tasks of a job, followed,
+//! and their runs merged; `spec/executors.md`. Campaigns use the same jobs.
 //!
-//! - [`options`]: what the command line says about the executor.
+//! - [`options`]: what is submitted where.
 //! - [`submission`]: the directory of a submission.
 //! - [`follow`]: waits for the tasks.
 //! - [`stop`]: stops the tasks of a job.
 //! - [`task_progress`]: prints the state of the tasks, [`progress`] also that of their tests.
 //! - [`collect`]: the runs of the tasks, merged.
-//! - [`array_task`]: `rtf run` as one of the tasks.
+//! - [`array_task`]: one of the tasks.
 
 mod array_task;
 mod collect;
@@ -19,43 +19,53 @@ mod submission;
 pub mod task_progress;
 
 use std::fs::File;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
-use clap::FromArgMatches;
+use rtf_cluster::{Cluster, ClusterError, Job, JobArray};
 use rtf_plan::plan::Plan;
-use rtf_plan::select::{Shard, ShardBy};
 use rtf_run::error::Failure;
-use rtf_run::{plan, reports, terminal};
-
-use crate::cli::{self, RunArgs, RunVerbArgs, StdoutFormat};
-use crate::command::VerbResult;
-use crate::request::{self, config};
+use rtf_run::finish::Finish;
+use rtf_run::request::{OutputRequest, TestsRequest};
+use rtf_run::{VerbResult, plan, reports, terminal};
 
 pub use array_task::{ArrayTask, last_attempt};
-pub use options::{cluster, refuse_unused, shards};
-use rtf_cluster::{Cluster, ClusterError, Job, JobArray};
-use submission::Submission;
+pub use options::{ClusterOptions, Executor, KubernetesOptions, cluster, refuse_unused, shards};
+pub use submission::Submission;
 
 /// The file with the exit code of an attempt.
 pub const EXIT_CODE: &str = "exit-code";
 
-/// Submits the tests of `rtf run`, follows and merges them.
-pub fn run(args: &RunVerbArgs) -> VerbResult {
-    refuse_options(args)?;
-    let shards = shards(&args.executor.cluster)?;
+/// What is done with the tasks and their runs.
+pub struct CollectRequest {
+    /// What is printed and written at the end.
+    pub output: OutputRequest,
+    /// Where the merged run goes.
+    pub finish: Finish,
+    /// A further symbolic link to the directory of the merged run.
+    pub symlink: Option<PathBuf>,
+    /// How long the tasks may take to end after a signal.
+    pub shutdown_timeout: Duration,
+}
+
+/// Submits the tests, follows and merges them. `tests` makes the request for a number of shards.
+pub fn run(
+    options: &ClusterOptions,
+    request: &CollectRequest,
+    tests: impl FnOnce(u32) -> Result<TestsRequest, Failure>,
+) -> VerbResult {
+    let shards = shards(options)?;
     // Reports are written at the end, but unusable paths are reported now.
-    let output = request::output(&args.run);
+    let output = &request.output;
     drop(reports::open_all(&output.reports, &output.results)?);
-    let (tasks, plan) = plan_all(&args.run, shards)?;
-    let results = &args.run.input.results.results;
-    let limit = args.run.shutdown_timeout;
-    let cluster = cluster(&args.executor.cluster, &plan, results, limit)?;
+    let (tasks, plan) = plan_all(tests(shards)?)?;
+    let cluster = cluster(options, &plan, &output.results, request.shutdown_timeout)?;
     let cluster = cluster.ok_or_else(|| Failure::internal("there is no cluster"))?;
-    let submission = Submission::create(results, shards, &plan, tasks, cluster)?;
-    match args.executor.cluster.kubernetes.print {
+    let submission = Submission::create(&output.results, shards, &plan, tasks, cluster)?;
+    match options.kubernetes.print {
         true => print_job(&submission),
-        false => supervise(&submission, args),
+        false => supervise(&submission, request),
     }
 }
 
@@ -84,9 +94,7 @@ pub fn print_manifest(cluster: &Cluster, array: &JobArray<'_>) -> Result<(), Fai
 }
 
 /// Plans all tests; returns the numbers of the shards that contain any.
-fn plan_all(args: &RunArgs, shards: u32) -> Result<(Vec<u32>, Plan), Failure> {
-    let shard = Shard { index: 1, count: shards, by: ShardBy::Hash };
-    let mut request = request::tests_in_shard(&args.input, Some(shard))?;
+fn plan_all(mut request: TestsRequest) -> Result<(Vec<u32>, Plan), Failure> {
     let shard = request.shard.take();
     let planned = plan::plan(&request)?;
     planned.print_warnings()?;
@@ -94,25 +102,8 @@ fn plan_all(args: &RunArgs, shards: u32) -> Result<(Vec<u32>, Plan), Failure> {
     Ok((tasks, (*planned.plan).clone()))
 }
 
-/// Follows and merges the submission in a directory, with its original options.
-pub fn resume(args: &RunVerbArgs) -> VerbResult {
-    let [dir] = args.run.input.inputs.as_slice() else {
-        let hint = "`rtf run --resume rtf-results/.submissions/NAME`";
-        return Err(Failure::input("`--resume` needs one directory").hint(hint));
-    };
-    let submission = Submission::open(dir)?;
-    std::env::set_current_dir(&submission.stored.working_dir).map_err(Failure::input)?;
-    let stored =
-        ["rtf", "run"].into_iter().map(str::to_owned).chain(submission.stored.args.clone());
-    let matches = cli::parser().try_get_matches_from(stored).map_err(Failure::input)?;
-    let matches = matches.subcommand().map_or(&matches, |(_, matches)| matches);
-    let mut args = RunVerbArgs::from_arg_matches(matches).map_err(Failure::input)?;
-    config::fill_run(&mut args.run, matches)?;
-    supervise(&submission, &args)
-}
-
 /// Submits unless that has happened, follows, and merges.
-fn supervise(submission: &Submission, args: &RunVerbArgs) -> VerbResult {
+pub fn supervise(submission: &Submission, request: &CollectRequest) -> VerbResult {
     let lock = submission.lock()?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let stopped_by = runtime.map_err(Failure::internal)?.block_on(async {
@@ -120,9 +111,9 @@ fn supervise(submission: &Submission, args: &RunVerbArgs) -> VerbResult {
             submission.discard();
             cluster_failure(error)
         })?;
-        follow::follow(&job, submission, args.run.shutdown_timeout).await
+        follow::follow(&job, submission, request.shutdown_timeout).await
     })?;
-    collect::collect(submission, &args.run, stopped_by)
+    collect::collect(submission, request, stopped_by)
 }
 
 /// The job of the submission, which is submitted unless an earlier process has done so.
@@ -152,28 +143,4 @@ fn job_array<'a>(submission: &'a Submission, command: &'a [String]) -> JobArray<
 pub fn cluster_failure(error: ClusterError) -> Failure {
     let hint = error.hint();
     Failure::input(error).maybe_hint(hint)
-}
-
-/// Refuses options that need the tests on this machine.
-fn refuse_options(args: &RunVerbArgs) -> Result<(), Failure> {
-    let RunVerbArgs { run, debug, .. } = args;
-    let refused = [
-        ("--rerun", !run.input.select.rerun.is_empty()),
-        ("--shard", run.input.select.shard.is_some()),
-        ("--dry-run", run.dry_run),
-        ("--web", run.web.web.is_some()),
-        ("--debug", debug.debug),
-        ("--debugger", debug.debugger.is_some()),
-        ("--debug-wait", debug.debug_wait),
-        ("--end-with-stdin", run.end_with_stdin),
-        ("--format", run.format != StdoutFormat::Console),
-    ];
-    match refused.iter().find(|(_, is_given)| *is_given) {
-        Some((option, _)) => {
-            let executor = args.executor.cluster.executor;
-            let error = format!("`{option}` cannot be combined with `--executor {executor}`");
-            Err(Failure::input(error))
-        }
-        None => Ok(()),
-    }
 }

@@ -11,7 +11,7 @@ use rtf_run::error::Failure;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
-use super::last_attempt;
+use crate::last_attempt;
 
 /// The directory of all submissions in a results directory: hidden, so that `rtf-results/*` names
 /// runs only.

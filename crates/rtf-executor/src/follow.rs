@@ -7,9 +7,9 @@ use rtf_engine::signal::SignalListener;
 use rtf_run::error::Failure;
 use rtf_run::terminal;
 
-use super::progress::Progress;
-use super::stop::Stop;
-use super::submission::Submission;
+use crate::progress::Progress;
+use crate::stop::Stop;
+use crate::submission::Submission;
 
 /// How often the scheduler is asked for the tasks, at most.
 const POLL_INTERVAL: Duration = Duration::from_secs(2);

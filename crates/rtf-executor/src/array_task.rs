@@ -3,12 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use rtf_plan::select::{Shard, ShardBy};
-use rtf_run::error::Failure;
-use rtf_run::history;
-
-use super::stop::CANCELLED;
-use crate::cli::{Annotations, ClusterArgs, RunArgs};
+use crate::stop::CANCELLED;
 
 /// A task of a submission: `3:0:/shared/submission`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -37,30 +32,6 @@ impl FromStr for ArrayTask {
 }
 
 impl ArrayTask {
-    /// Replaces the options that concern the results: the submitting process merges them.
-    pub fn apply(&self, args: &mut RunArgs, executor: &ClusterArgs) -> Result<(), Failure> {
-        if self.is_cancelled() {
-            return Err(Failure::input("the submission was cancelled"));
-        }
-        let Some(count) = executor.shards.filter(|count| (1..=*count).contains(&self.number))
-        else {
-            return Err(Failure::input(format!("there is no task {}", self.number)));
-        };
-        let results = &mut args.input.results.results;
-        let history = &mut args.input.history.history;
-        if history.is_none() {
-            let database = history::default_database(results);
-            *history = Some(database.to_string_lossy().into_owned());
-        }
-        *results = self.attempt_dir();
-        args.input.select.shard = Some(Shard { index: self.number, count, by: ShardBy::Hash });
-        args.reports.clear();
-        args.symlink = None;
-        args.annotations = Annotations::None;
-        args.no_history = true;
-        Ok(())
-    }
-
     /// Whether the user has cancelled the tasks.
     pub fn is_cancelled(&self) -> bool {
         self.dir.join(CANCELLED).exists()

@@ -1,6 +1,6 @@
 //! The options of an executor: what is submitted where.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use rtf_cluster::Cluster;
@@ -9,15 +9,59 @@ use rtf_cluster::slurm::Slurm;
 use rtf_plan::plan::Plan;
 use rtf_run::error::Failure;
 
-use super::stop::STOP_GRACE;
-use super::submission::text;
-use crate::cli::{ClusterArgs, ExecutorOption};
+use crate::stop::STOP_GRACE;
+use crate::submission::text;
+
+/// Where tests and episodes run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Executor {
+    /// This machine.
+    Local,
+    /// A Slurm cluster.
+    Slurm,
+    /// A Kubernetes cluster.
+    Kubernetes,
+}
+
+impl std::fmt::Display for Executor {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Local => "local",
+            Self::Slurm => "slurm",
+            Self::Kubernetes => "kubernetes",
+        })
+    }
+}
+
+/// The executor, and its tasks.
+pub struct ClusterOptions {
+    pub executor: Executor,
+    /// The number of tasks, from 1.
+    pub shards: Option<u32>,
+    /// Arguments of `sbatch` or `kubectl`.
+    pub args: Vec<String>,
+    /// Whether a licence or an extended resource is requested for each resource that a suite requires.
+    pub licenses: bool,
+    pub kubernetes: KubernetesOptions,
+}
+
+/// What a Job of Kubernetes needs.
+pub struct KubernetesOptions {
+    /// The image with `rtf` and the suites.
+    pub image: Option<String>,
+    /// The PersistentVolumeClaim of the results directory.
+    pub claim: Option<String>,
+    /// The file that is merged into the Job.
+    pub patch: Option<PathBuf>,
+    /// Whether the Job is printed instead of submitted.
+    pub print: bool,
+}
 
 /// The domain of extended resources of Kubernetes.
 const RESOURCE_DOMAIN: &str = "rtf";
 
 /// The number of tasks.
-pub fn shards(args: &ClusterArgs) -> Result<u32, Failure> {
+pub fn shards(args: &ClusterOptions) -> Result<u32, Failure> {
     args.shards.ok_or_else(|| {
         let error = format!("`--executor {}` needs the number of shards", args.executor);
         Failure::input(error).hint("add `--shards N`")
@@ -27,14 +71,14 @@ pub fn shards(args: &ClusterArgs) -> Result<u32, Failure> {
 /// The cluster, unless everything runs on this machine. Tasks write into `results`, and end within
 /// `shutdown_timeout`.
 pub fn cluster(
-    args: &ClusterArgs,
+    args: &ClusterOptions,
     plan: &Plan,
     results: &Path,
     shutdown_timeout: Duration,
 ) -> Result<Option<Cluster>, Failure> {
     match args.executor {
-        ExecutorOption::Local => Ok(None),
-        ExecutorOption::Slurm => {
+        Executor::Local => Ok(None),
+        Executor::Slurm => {
             let mut options = args.args.clone();
             let licenses = required(args, plan).map(|it| format!("{it}:1")).collect::<Vec<_>>();
             if !licenses.is_empty() {
@@ -43,7 +87,7 @@ pub fn cluster(
             let program = std::env::current_exe().map_err(Failure::internal)?;
             Ok(Some(Cluster::Slurm(Slurm { program: text(program.into())?, options })))
         }
-        ExecutorOption::Kubernetes => {
+        Executor::Kubernetes => {
             let resources = required(args, plan).map(|it| format!("{RESOURCE_DOMAIN}/{it}"));
             let resources = resources.collect();
             let mount = std::path::absolute(results).map_err(Failure::internal)?;
@@ -60,7 +104,7 @@ pub fn cluster(
     }
 }
 
-fn image(args: &ClusterArgs) -> Result<String, Failure> {
+fn image(args: &ClusterOptions) -> Result<String, Failure> {
     let image = args.kubernetes.image.clone();
     image.ok_or_else(|| {
         Failure::input("`--executor kubernetes` needs an image with `rtf` and the suites")
@@ -69,7 +113,7 @@ fn image(args: &ClusterArgs) -> Result<String, Failure> {
 }
 
 /// The text of the patch. Without one, the results need a claim.
-fn patch(args: &ClusterArgs) -> Result<Option<String>, Failure> {
+fn patch(args: &ClusterOptions) -> Result<Option<String>, Failure> {
     let Some(path) = &args.kubernetes.patch else {
         if args.kubernetes.claim.is_some() {
             return Ok(None);
@@ -84,7 +128,7 @@ fn patch(args: &ClusterArgs) -> Result<Option<String>, Failure> {
 }
 
 /// The names of the resources that the suites require, if they are to be requested.
-fn required<'a>(args: &ClusterArgs, plan: &'a Plan) -> impl Iterator<Item = String> + use<'a> {
+fn required<'a>(args: &ClusterOptions, plan: &'a Plan) -> impl Iterator<Item = String> + use<'a> {
     let suites = plan.suites.iter().filter(|_| args.licenses);
     let required = suites.flat_map(|suite| &suite.settings.requires);
     let names: std::collections::BTreeSet<_> = required.map(|it| plain_name(&it.name)).collect();
@@ -98,9 +142,9 @@ fn plain_name(resource: &str) -> String {
 }
 
 /// Refuses options that have no effect with the executor.
-pub fn refuse_unused(args: &ClusterArgs) -> Result<(), Failure> {
-    let is_cluster = args.executor != ExecutorOption::Local;
-    let is_kubernetes = args.executor == ExecutorOption::Kubernetes;
+pub fn refuse_unused(args: &ClusterOptions) -> Result<(), Failure> {
+    let is_cluster = args.executor != Executor::Local;
+    let is_kubernetes = args.executor == Executor::Kubernetes;
     let kubernetes = &args.kubernetes;
     let given = [
         ("--shards", args.shards.is_some(), is_cluster),

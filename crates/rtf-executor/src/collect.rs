@@ -8,12 +8,10 @@ use rtf_report::journal;
 use rtf_report::merge::MergeOptions;
 use rtf_report::run_dir::{self, JOURNAL, RunDir};
 use rtf_run::error::Failure;
-use rtf_run::{exit, outputs, terminal};
+use rtf_run::{VerbResult, exit, merge, outputs, terminal};
 
-use super::submission::Submission;
-use crate::cli::RunArgs;
-use crate::command::{VerbResult, merge};
-use crate::request;
+use crate::CollectRequest;
+use crate::submission::Submission;
 
 /// The last attempt of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +27,11 @@ enum TaskResult {
 }
 
 /// Merges the runs of the tasks. `stopped_by` is the signal that ended the submission.
-pub fn collect(submission: &Submission, args: &RunArgs, stopped_by: Option<i32>) -> VerbResult {
+pub fn collect(
+    submission: &Submission,
+    request: &CollectRequest,
+    stopped_by: Option<i32>,
+) -> VerbResult {
     let mut runs = Vec::new();
     let mut is_lost = false;
     for task in &submission.stored.tasks {
@@ -47,14 +49,14 @@ pub fn collect(submission: &Submission, args: &RunArgs, stopped_by: Option<i32>)
         return Ok(exit::of_array(None, stopped_by, is_lost));
     }
     let options = MergeOptions { partial: true, ..MergeOptions::default() };
-    let (dir, record) = merge::merge(&args.input.results.results, &runs, options)?;
+    let (dir, record) = merge::merge(&request.output.results, &runs, options)?;
     if !is_lost && record.tests.len() != submission.stored.tests as usize {
         let (found, all) = (record.tests.len(), submission.stored.tests);
         let error = format!("the tasks ran {found} of {all} tests: the suites have changed");
         Failure::internal(error).print();
         is_lost = true;
     }
-    finish(args, &dir)?;
+    finish(request, &dir)?;
     Ok(exit::of_array(Some(&record), stopped_by, is_lost))
 }
 
@@ -93,14 +95,14 @@ fn report(
 }
 
 /// Writes and sends what `rtf run` does at the end.
-fn finish(args: &RunArgs, dir: &RunDir) -> Result<(), Failure> {
-    if let Some(link) = &args.symlink {
+fn finish(request: &CollectRequest, dir: &RunDir) -> Result<(), Failure> {
+    if let Some(link) = &request.symlink {
         run_dir::link(dir, link).map_err(Failure::input)?;
     }
     // The record of `merge` has no details.
     let stored = journal::read(&dir.journal()).map_err(Failure::internal)?;
     let record = &stored.record;
-    outputs::complete(&request::output(args), &dir.journal(), record);
-    request::finish(args, false)?.finish(record);
+    outputs::complete(&request.output, &dir.journal(), record);
+    request.finish.finish(record);
     Ok(())
 }
