@@ -38,6 +38,7 @@ pub mod request;
 pub mod rerun_command;
 pub mod revision;
 pub mod run;
+pub mod spawn_self;
 pub mod terminal;
 pub mod web;
 

@@ -5,7 +5,6 @@
 mod cli;
 mod command;
 mod request;
-mod spawn_self;
 mod testrunner;
 
 use std::process::ExitCode;
@@ -64,7 +63,9 @@ fn run(verb: Verb, matches: &ArgMatches) -> VerbResult {
         Verb::AmentDir => command::sdk_dir::ament(),
         Verb::AdaDir => command::sdk_dir::ada(),
         Verb::Completions { shell } => command::completions::run(shell),
-        Verb::CampaignTask(args) => command::campaign::run_task(&args),
+        Verb::CampaignTask(args) => {
+            rtf_coordinator::task::run(&args.array_task, args.shutdown_timeout)
+        }
         Verb::Man { dir } => command::man::run(&dir),
     }
 }

@@ -4,9 +4,8 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
-use rtf_plan::suite::parse_duration;
-
 use rtf_executor::ArrayTask;
+use rtf_plan::suite::parse_duration;
 
 const EXECUTOR: &str = "Executor";
 

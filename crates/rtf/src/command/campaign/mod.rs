@@ -1,18 +1,10 @@
 //! `rtf campaign`.
 
-mod assignment;
 mod compare;
-mod coordinator;
-mod pool;
-mod progress;
 mod run;
 mod search;
 mod show;
 mod shrink;
-mod stream_pool;
-mod summary;
-mod task;
-mod worker;
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -22,8 +14,6 @@ use rtf_run::{campaign, terminal};
 
 use super::VerbResult;
 use crate::cli::CampaignVerb;
-
-pub use task::run as run_task;
 
 /// Runs a campaign, or prints its episodes.
 pub fn run(verb: CampaignVerb, matches: &ArgMatches) -> VerbResult {

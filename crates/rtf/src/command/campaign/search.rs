@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use clap::ArgMatches;
 use rtf_campaign::episodes::SeedStream;
 use rtf_campaign::ranges::{meet_constraints, value_of};
+use rtf_coordinator::stream_pool::{Ended, POLL, StreamPool};
 use rtf_engine::signal::SignalListener;
 use rtf_model::{Episode, Parameter};
 use rtf_report::episode_results::EpisodeLine;
@@ -19,7 +20,6 @@ use serde_json::{Value, json};
 use tokio::sync::mpsc;
 
 use super::run::describe_search;
-use super::stream_pool::{Ended, POLL, StreamPool};
 use crate::cli::CampaignSearchArgs;
 use crate::command::VerbResult;
 use crate::request::config;

@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use clap::ArgMatches;
 use rtf_campaign::analysis::{self, ByParameter, Cell, FailureMap, Sample};
 use rtf_campaign::{EpisodeResult, Judge};
+use rtf_coordinator::summary;
 use rtf_report::{escape, output_file};
 use rtf_run::campaign::directory::CampaignDir;
 use rtf_run::error::Failure;
@@ -15,7 +16,6 @@ use rtf_run::{campaign, reports, terminal};
 use rtf_web::html_report;
 use serde_json::json;
 
-use super::summary;
 use crate::cli::{CampaignShowArgs, CampaignShowFormat};
 use crate::command::VerbResult;
 use crate::request::config;

@@ -8,6 +8,8 @@ use std::process::ExitCode;
 use clap::ArgMatches;
 use rtf_campaign::ranges::meet_constraints;
 use rtf_campaign::{Change, ParameterRange, Shrunk, ShrunkChange, shrink};
+use rtf_coordinator::progress::parameters;
+use rtf_coordinator::stream_pool::{Ended, StreamPool};
 use rtf_engine::signal::SignalListener;
 use rtf_model::{Episode, EpisodeOutcome, Parameter};
 use rtf_report::escape;
@@ -19,9 +21,7 @@ use rtf_run::terminal;
 use serde_json::json;
 use tokio::runtime::Runtime;
 
-use super::progress::parameters;
 use super::run::describe_search;
-use super::stream_pool::{Ended, StreamPool};
 use crate::cli::{CampaignFormat, CampaignShrinkArgs};
 use crate::command::VerbResult;
 use crate::request::config;

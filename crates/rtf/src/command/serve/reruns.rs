@@ -10,11 +10,10 @@ use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 
 use rtf_model::{Event, EventKind};
+use rtf_run::spawn_self;
 use rtf_web::{FinishedRun, RerunRejected};
 use rustix::process::{Pid, WaitId, WaitIdOptions};
 use tokio::sync::watch;
-
-use crate::spawn_self;
 
 /// SIGINT.
 const INT: i32 = 2;

@@ -2,13 +2,9 @@
 
 use std::ffi::OsString;
 use std::io;
-use std::os::unix::process::ExitStatusExt;
-use std::process::ExitStatus;
 
-use rtf_run::exit;
+use rtf_run::spawn_self;
 use tokio::process::{Child, Command};
-
-use crate::spawn_self;
 
 /// Starts a run, which ends with this process.
 pub fn start() -> io::Result<Child> {
@@ -32,12 +28,6 @@ fn run_args(mut args: Vec<OsString>) -> Vec<OsString> {
         index += 1;
     }
     args
-}
-
-/// The exit code, as shells report it.
-pub fn exit_code(status: ExitStatus) -> u8 {
-    let code = status.code().and_then(|code| u8::try_from(code).ok());
-    code.or_else(|| status.signal().map(exit::of_signal)).unwrap_or(exit::BROKEN)
 }
 
 #[cfg(test)]

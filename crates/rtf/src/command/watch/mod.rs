@@ -19,20 +19,18 @@ use clap::ArgMatches;
 use notify::{Event, RecommendedWatcher, RecursiveMode, Watcher as _};
 use rtf_engine::signal::SignalListener;
 use rtf_report::escape;
+use rtf_run::diagnostics::count;
+use rtf_run::error::Failure;
+use rtf_run::{spawn_self, terminal};
 use tokio::process::{Child, ChildStdin};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
-pub use self::child::exit_code;
 use self::debounce::{Debounce, FileChange};
 use self::state::{WatchAction, WatchState};
 use self::watched::Watched;
 use super::VerbResult;
 use crate::cli::{InputArgs, RunArgs};
 use crate::request::config;
-use crate::spawn_self;
-use rtf_run::diagnostics::count;
-use rtf_run::error::Failure;
-use rtf_run::terminal;
 
 /// SIGTERM.
 const TERM: i32 = 15;
@@ -140,7 +138,7 @@ impl<'a> Watch<'a> {
             }
             WatchInput::RunEnded(status) => {
                 (self.child, self.lifeline) = (None, None);
-                let code = child::exit_code(status.map_err(Failure::internal)?);
+                let code = spawn_self::exit_code(status.map_err(Failure::internal)?);
                 let action = self.state.run_ended(code);
                 if action == WatchAction::Wait {
                     let files = count(self.watched.existing_files(), "file");

@@ -2,27 +2,25 @@
 
 use std::collections::BTreeSet;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use rtf_campaign::EpisodeList;
 use rtf_engine::signal::SignalListener;
+use rtf_executor::ArrayTask;
 use rtf_executor::EXIT_CODE;
 use rtf_run::campaign::arrays::CampaignArray;
 use rtf_run::campaign::directory::write;
 use rtf_run::campaign::read_list;
 use rtf_run::error::Failure;
-use rtf_run::exit;
+use rtf_run::{VerbResult, exit, spawn_self};
 
 use super::worker;
-use crate::cli::CampaignTaskArgs;
-use crate::command::{VerbResult, watch};
-use crate::spawn_self;
 
 /// SIGTERM.
 const TERM: i32 = 15;
 
 /// Runs the episodes of a task that have no result yet, and stores the exit code.
-pub fn run(args: &CampaignTaskArgs) -> VerbResult {
-    let task = &args.array_task;
+pub fn run(task: &ArrayTask, shutdown_timeout: Duration) -> VerbResult {
     let array = CampaignArray::open(&task.dir)?;
     let dir = array.campaign()?;
     let worker = array.worker(task.number);
@@ -36,7 +34,7 @@ pub fn run(args: &CampaignTaskArgs) -> VerbResult {
         false => {
             let file = attempt.join("list.jsonl");
             write(&file, &EpisodeList::to_json_lines(&list))?;
-            let command = worker::command_with_list(&dir, worker, &file, args.shutdown_timeout)?;
+            let command = worker::command_with_list(&dir, worker, &file, shutdown_timeout)?;
             let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
             runtime.map_err(Failure::internal)?.block_on(wait(command.into()))?
         }
@@ -55,7 +53,7 @@ async fn wait(mut command: tokio::process::Command) -> Result<u8, Failure> {
     loop {
         tokio::select! {
             status = child.wait() => {
-                return status.map(watch::exit_code).map_err(Failure::internal);
+                return status.map(spawn_self::exit_code).map_err(Failure::internal);
             }
             (number, _) = signals.next() => {
                 if let Some(process) = process {

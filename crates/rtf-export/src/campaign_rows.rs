@@ -3,7 +3,7 @@
 use rtf_history::answers::EpisodeLine;
 use rtf_history::entry::CampaignInfo;
 
-use super::rows::{Cell, CellType, Column, ExportRow, integer, maybe_text, text};
+use crate::rows::{Cell, CellType, Column, ExportRow, integer, maybe_text, text};
 
 impl ExportRow for CampaignInfo {
     const TABLE: &'static str = "campaigns";

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::rows::{Cell, ExportRow, RowWriter};
+use crate::rows::{Cell, ExportRow, RowWriter};
 
 pub struct CsvWriter<W: Write>(Box<csv::Writer<W>>);
 

@@ -13,14 +13,12 @@ use rtf_model::{Episode, EpisodeOutcome};
 use rtf_report::episode_results::EpisodeLine;
 use rtf_run::campaign::directory::CampaignDir;
 use rtf_run::error::Failure;
-use rtf_run::exit;
+use rtf_run::spawn_self::{self, exit_code};
+use rtf_run::{VerbResult, exit};
 use serde::Serialize;
 
 use super::assignment::ResultFollower;
 use super::worker;
-use crate::command::VerbResult;
-use crate::command::watch::exit_code;
-use crate::spawn_self;
 
 /// How often the results of the workers are read: an episode is the answer to a question.
 pub const POLL: Duration = Duration::from_millis(5);

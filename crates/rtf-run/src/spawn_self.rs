@@ -2,10 +2,12 @@
 
 use std::ffi::OsStr;
 use std::io;
-use std::os::unix::process::CommandExt;
-use std::process::{Command, Stdio};
+use std::os::unix::process::{CommandExt, ExitStatusExt};
+use std::process::{Command, ExitStatus, Stdio};
 
 use rustix::process::{Pid, Signal};
+
+use crate::exit;
 
 /// Makes a run end when its standard input closes.
 pub const END_WITH_STDIN: &str = "--end-with-stdin";
@@ -35,4 +37,10 @@ pub fn signal(pid: Pid, number: i32) {
     if let Some(signal) = Signal::from_named_raw(number) {
         let _ = rustix::process::kill_process(pid, signal);
     }
+}
+
+/// The exit code of a child, as shells report it.
+pub fn exit_code(status: ExitStatus) -> u8 {
+    let code = status.code().and_then(|code| u8::try_from(code).ok());
+    code.or_else(|| status.signal().map(exit::of_signal)).unwrap_or(exit::BROKEN)
 }

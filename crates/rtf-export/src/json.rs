@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use super::VERSION;
-use super::rows::{ExportRow, RowWriter};
+use crate::VERSION;
+use crate::rows::{ExportRow, RowWriter};
 
 pub struct JsonWriter<W: Write> {
     out: W,

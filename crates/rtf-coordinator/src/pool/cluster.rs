@@ -18,9 +18,9 @@ use rtf_run::campaign::read_list;
 use rtf_run::error::Failure;
 use rtf_run::{exit, terminal};
 
-use super::super::assignment::Assignment;
-use super::super::worker;
 use super::{EndedWorker, Pool, WorkerEvent};
+use crate::assignment::Assignment;
+use crate::worker;
 
 /// SIGTERM.
 const TERM: i32 = 15;

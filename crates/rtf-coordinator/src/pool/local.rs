@@ -6,12 +6,11 @@ use std::time::Duration;
 use rtf_model::Episode;
 use rtf_run::campaign::directory::CampaignDir;
 use rtf_run::error::Failure;
+use rtf_run::spawn_self;
 
-use super::super::assignment::Assignment;
-use super::super::worker;
 use super::{EndedWorker, Pool, WorkerEvent};
-use crate::command::watch;
-use crate::spawn_self;
+use crate::assignment::Assignment;
+use crate::worker;
 
 /// The workers on this machine.
 pub struct LocalPool<'a> {
@@ -80,7 +79,7 @@ impl Pool for LocalPool<'_> {
                 Some(status) => {
                     let assignment = self.workers.remove(index).assignment;
                     events.push(WorkerEvent::Ended(EndedWorker {
-                        code: Some(watch::exit_code(status)),
+                        code: Some(spawn_self::exit_code(status)),
                         is_cancelled: false,
                         outputs: vec![worker::output(self.dir, assignment.worker)],
                         assignment,

@@ -9,8 +9,7 @@ use std::time::Duration;
 use rtf_report::escape;
 use rtf_run::campaign::directory::CampaignDir;
 use rtf_run::error::Failure;
-
-use crate::spawn_self;
+use rtf_run::spawn_self;
 
 /// The file with what a worker printed.
 const OUTPUT: &str = "output.txt";

@@ -14,8 +14,8 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::{Type, TypePtr};
 
-use super::VERSION;
-use super::rows::{Cell, CellType, Column, ExportRow, RowWriter};
+use crate::VERSION;
+use crate::rows::{Cell, CellType, Column, ExportRow, RowWriter};
 
 /// When a row group is written.
 #[derive(Clone, Copy, Debug)]
