@@ -3,11 +3,10 @@
 use std::io::{self, Write};
 
 use rtf_report::escape;
+use rtf_run::doctor::{CheckResult, Component, Missing};
 use rtf_run::error::Failure;
 use rtf_run::terminal;
 use serde::Serialize;
-
-use super::{CheckResult, Component, Missing};
 
 /// The column of details.
 const DETAILS: usize = 27;

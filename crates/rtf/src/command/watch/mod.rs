@@ -1,12 +1,10 @@
 //! `rtf watch`: runs tests, and reruns them when a file changes that they depend on.
 //!
 //! Each run is a child process, `rtf run` with the same options, so that it has its own
-//! guard. [`watched`] finds the files, [`debounce`] decides when their changes are due,
-//! and [`state`] decides what to do; this module does it.
+//! guard. [`watched`] finds the files, [`rtf_run::watch`] decides when their changes are due,
+//! and what to do; this module does it.
 
 mod child;
-mod debounce;
-mod state;
 mod watched;
 
 use std::collections::BTreeSet;
@@ -21,12 +19,12 @@ use rtf_engine::signal::SignalListener;
 use rtf_report::escape;
 use rtf_run::diagnostics::count;
 use rtf_run::error::Failure;
+use rtf_run::watch::debounce::{Debounce, FileChange};
+use rtf_run::watch::state::{WatchAction, WatchState};
 use rtf_run::{spawn_self, terminal};
 use tokio::process::{Child, ChildStdin};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
-use self::debounce::{Debounce, FileChange};
-use self::state::{WatchAction, WatchState};
 use self::watched::Watched;
 use super::VerbResult;
 use crate::cli::{InputArgs, RunArgs};

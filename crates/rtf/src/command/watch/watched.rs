@@ -11,8 +11,8 @@ use rtf_model::Diagnostic;
 use rtf_plan::config::ConfigFiles;
 use rtf_plan::plan::{Plan, PlanDraft};
 use rtf_run::plan::{self, Draft};
+use rtf_run::watch::debounce::FileChange;
 
-use super::debounce::FileChange;
 use crate::cli::InputArgs;
 use crate::request;
 

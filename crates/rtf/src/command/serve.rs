@@ -1,7 +1,5 @@
 //! `rtf serve`: shows active and past runs in a browser until a signal ends it.
 
-mod reruns;
-
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -10,11 +8,11 @@ use clap::ArgMatches;
 use rtf_engine::signal::SignalListener;
 use rtf_report::run_dir::JOURNAL;
 use rtf_run::error::Failure;
+use rtf_run::reruns::Reruns;
 use rtf_run::web::{self, Served};
 use rtf_run::{exit, history, terminal};
 use rtf_web::{Capabilities, ShutdownHandle};
 
-use self::reruns::Reruns;
 use super::VerbResult;
 use crate::cli::ServeArgs;
 use crate::request::{config, web_settings};

@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 
+use crate::spawn_self;
 use rtf_model::{Event, EventKind};
-use rtf_run::spawn_self;
 use rtf_web::{FinishedRun, RerunRejected};
 use rustix::process::{Pid, WaitId, WaitIdOptions};
 use tokio::sync::watch;

@@ -1,6 +1,6 @@
 //! Decides what to do when a file changes, a run ends, or a signal arrives. Does no I/O.
 
-use rtf_run::exit;
+use crate::exit;
 
 /// The exit code of a run that SIGTERM ended.
 const TERMINATED: u8 = 128 + 15;
