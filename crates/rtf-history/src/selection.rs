@@ -11,13 +11,11 @@ use crate::entry::CampaignInfo;
 /// Which runs a question is about. The default is all runs.
 #[derive(Clone, Debug, Default)]
 pub struct RunSelection {
-    /// Only runs of this branch.
     pub branch: Option<String>,
     /// Only runs of commits whose hash starts with this.
     pub commit: Option<String>,
     /// Only results of suites that require this resource.
     pub robot: Option<String>,
-    /// Only runs with this profile.
     pub profile: Option<String>,
     /// Only runs on this machine.
     pub host: Option<String>,

@@ -102,7 +102,6 @@ impl SharedBuffer {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits while a condition holds.
     fn wait_while(&self, condition: impl Fn(&WriterState) -> bool) -> MutexGuard<'_, WriterState> {
         let state = self.changed.wait_while(self.lock(), |state| condition(state));
         state.unwrap_or_else(PoisonError::into_inner)
@@ -205,7 +204,6 @@ impl Write for BackgroundWriter {
     }
 }
 
-/// Removes colours.
 struct WithoutColours {
     out: BackgroundWriter,
     stripper: StripBytes,

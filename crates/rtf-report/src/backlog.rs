@@ -21,7 +21,6 @@ struct Waiting {
 }
 
 impl Backlog {
-    /// Adds a pending event.
     pub fn add(&self, event: &Event) {
         let Some((source, bytes)) = size(&event.kind) else { return };
         let mut waiting = self.0.lock().unwrap_or_else(PoisonError::into_inner);

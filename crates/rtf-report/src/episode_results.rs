@@ -10,14 +10,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::{ReportError, Reporter};
 
-/// The name of the file.
 pub const EPISODE_RESULTS: &str = "episodes.jsonl";
 const WHAT: &str = "the results of the episodes";
 
 /// A line of the file: an episode starts, or has finished.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EpisodeLine {
-    /// The number of the episode.
     pub episode: u64,
     /// Its result; `None`: it starts.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -30,7 +30,6 @@ pub(crate) struct Extent {
 }
 
 impl Extent {
-    /// All of it.
     pub(crate) const ALL: Self = Self { items: usize::MAX, stack_lines: usize::MAX };
 }
 

@@ -31,7 +31,6 @@ pub(crate) enum Rank {
 /// One problem of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct Finding {
-    /// The severity.
     pub rank: Rank,
     /// A stable word for its kind: `failed`, `fixture`, `hook`.
     pub kind: String,
@@ -78,7 +77,6 @@ pub(crate) fn is_problem(record: &Record, test: &TestRecord) -> bool {
     test::is_problem(record, test)
 }
 
-/// The findings of one test.
 pub(crate) fn of_test(record: &Record, test: &TestRecord, roots: &Roots<'_>) -> Vec<Finding> {
     test::of(record, test, roots)
 }

@@ -16,7 +16,6 @@ pub(crate) enum Within {
     Run,
 }
 
-/// Something that grows.
 #[derive(Debug)]
 pub(crate) struct Growing {
     /// A fixture's name, or whose host it is.

@@ -10,12 +10,9 @@ const TICK: Duration = Duration::from_millis(250);
 
 const TEMPLATE: &str = "{elapsed_precise} [{bar:20}] {pos} of {len} done  {wide_msg}";
 
-/// What the bar shows.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct BarState {
-    /// How many tests are done.
     pub done: u64,
-    /// The number of all tests.
     pub tests: u64,
     /// What the run does now.
     pub message: String,

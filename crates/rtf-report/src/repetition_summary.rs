@@ -14,7 +14,6 @@ const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '
 /// The repetitions of a test that ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Repeated {
-    /// How many passed.
     pub passed: usize,
     /// How long each took, the shortest first. Never empty.
     pub times: Vec<Duration>,

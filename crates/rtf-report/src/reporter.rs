@@ -34,15 +34,11 @@ pub trait Reporter: Send {
     }
 }
 
-/// A report could not be written.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot write {what} to `{}`", path.display())]
 pub struct ReportError {
-    /// Which report.
     pub what: &'static str,
-    /// Where to.
     pub path: PathBuf,
-    /// Why.
     #[source]
     pub source: std::io::Error,
 }

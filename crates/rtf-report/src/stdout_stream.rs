@@ -23,12 +23,10 @@ impl LineStream {
         Self { what, out: UntilDisconnect::new(out), page: Vec::new() }
     }
 
-    /// Writes when much waits.
     pub fn flush_if_long(&mut self) -> Result<(), ReportError> {
         if self.page.len() > PAGE { self.flush() } else { Ok(()) }
     }
 
-    /// Writes what waits.
     pub fn flush(&mut self) -> Result<(), ReportError> {
         if self.page.is_empty() {
             return Ok(());

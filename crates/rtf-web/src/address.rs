@@ -2,7 +2,6 @@
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 
-/// Where the API is.
 pub const API: &str = "/api/v1";
 
 /// What is encoded in a part of a path: all except the unreserved characters of RFC 3986.

@@ -25,14 +25,11 @@ const STREAMS: usize = 256;
 #[derive(Clone)]
 pub struct App {
     pub runs: Arc<Runs>,
-    /// The results of many runs.
     pub history: Arc<dyn HistorySource>,
     pub campaigns: Arc<dyn CampaignSource>,
-    /// Whether it is also shown as metrics.
+    /// Whether `/metrics` shows the history.
     pub metrics: bool,
-    /// Access control.
     pub access: Arc<Access>,
-    /// What the server can do in addition to showing runs.
     pub role: Capabilities,
     /// Creates the functions that return the commands for rerunning and replaying a test.
     pub commands: fn() -> TestCommands,
@@ -55,7 +52,6 @@ impl std::fmt::Debug for App {
 }
 
 impl App {
-    /// Positions for event streams.
     #[must_use]
     pub fn streams() -> Arc<Semaphore> {
         Arc::new(Semaphore::new(STREAMS))
@@ -114,7 +110,6 @@ pub async fn blocking<T: Send + 'static>(
     tokio::task::spawn_blocking(act).await.map_err(failed)?
 }
 
-/// A JSON response.
 #[derive(Debug)]
 pub struct JsonText(Bytes);
 

@@ -5,7 +5,6 @@ use axum::http::{HeaderMap, header};
 /// What a `Range` asks for.
 #[derive(Debug, PartialEq, Eq)]
 pub enum RangeRequest {
-    /// The whole file.
     All,
     /// From the first byte on, up to and without the second.
     Part(u64, u64),

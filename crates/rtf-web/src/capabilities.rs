@@ -10,22 +10,17 @@ use rtf_model::{Respondent, SuiteId, TestId};
 pub trait RunControl: Send + Sync {
     /// End the run as SIGINT does.
     fn stop_run(&self);
-    /// Stop a test that runs.
     fn stop_test(&self, test: TestId);
     /// Skip the rest of a suite.
     fn skip_suite(&self, suite: SuiteId);
-    /// Answer a question of a test that runs.
     fn answer(&self, answer: AnswerRequest);
 }
 
-/// An answer to a question of a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AnswerRequest {
     pub test: TestId,
-    /// The number of the question.
     pub question: u32,
     pub answer: String,
-    /// Who answers.
     pub by: Respondent,
 }
 
@@ -56,9 +51,7 @@ pub struct FinishedRun<'a> {
 /// Why a run was not started.
 #[derive(Debug)]
 pub struct RerunRejected {
-    /// Why, as text.
     pub reason: String,
-    /// How to fix it.
     pub hint: Option<String>,
 }
 

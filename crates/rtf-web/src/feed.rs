@@ -43,9 +43,7 @@ const LONGEST_ID: usize = 9;
 /// The sources whose messages, measurements and output a client requests.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Details {
-    /// All sources.
     All,
-    /// Of these.
     Of(Vec<Source>),
 }
 

@@ -55,7 +55,6 @@ pub async fn metrics(State(app): State<App>) -> Result<Response, Problem> {
     Ok(([(header::CONTENT_TYPE, CONTENT_TYPE)], text.await?).into_response())
 }
 
-/// What the metrics are about.
 struct HistoryNumbers {
     /// The newest first.
     runs: Vec<RunInfo>,

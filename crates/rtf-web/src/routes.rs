@@ -22,7 +22,6 @@ use crate::{api, legacy, metrics, page};
 
 /// The state of all handlers, and what changes it.
 pub struct Prepared {
-    /// The state.
     pub app: App,
     /// Becomes true when the server shuts down.
     pub ending: watch::Sender<bool>,

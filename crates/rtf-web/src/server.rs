@@ -153,7 +153,6 @@ impl WebServer {
         format!("{scheme}://{host}:{port}/#token={}", self.token)
     }
 
-    /// Where it listens.
     #[must_use]
     pub fn address(&self) -> SocketAddr {
         self.address

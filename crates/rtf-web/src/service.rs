@@ -14,7 +14,6 @@ use crate::connections::Limits;
 use crate::history_source::HistorySource;
 use crate::tls::TlsError;
 
-/// How to serve.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// Where to listen. Port 0 is any that is free.
@@ -27,38 +26,29 @@ pub struct Settings {
     pub tls: Option<(PathBuf, PathBuf)>,
     /// Other names under which this server is reached.
     pub hosts: Vec<String>,
-    /// How many connections there may be.
     pub limits: Limits,
 }
 
-/// Why nothing is served.
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
     /// The address is not of this machine alone.
     #[error("`{0}` can be reached from beyond this machine")]
     Remote(IpAddr),
-    /// The address cannot be listened on.
     #[error("cannot listen on `{address}`")]
     Listen {
-        /// Where.
         address: SocketAddr,
-        /// Why.
         #[source]
         source: io::Error,
     },
-    /// There is no token.
     #[error(transparent)]
     Token(#[from] TokenError),
-    /// There is no TLS.
     #[error(transparent)]
     Tls(#[from] TlsError),
-    /// The thread cannot be started.
     #[error("cannot start the server")]
     Start(#[source] io::Error),
 }
 
 impl ServeError {
-    /// How to fix it.
     #[must_use]
     pub fn hint(&self) -> Option<&'static str> {
         match self {
@@ -74,20 +64,14 @@ impl ServeError {
     }
 }
 
-/// What is served.
 pub struct Service<'a> {
-    /// The results directory.
     pub results: &'a Path,
-    /// The results of many runs.
     pub history: Arc<dyn HistorySource>,
-    /// The campaigns of the results directory.
     pub campaigns: Arc<dyn CampaignSource>,
-    /// Whether `/metrics` shows it.
+    /// Whether `/metrics` shows the history.
     pub metrics: bool,
-    /// What this server can do in addition to showing them.
     pub role: Capabilities,
     /// Creates the functions that return the commands for rerunning and replaying a test.
     pub commands: fn() -> TestCommands,
-    /// Reports a wrong token.
     pub wrong_token: Box<dyn Fn(WrongToken) + Send>,
 }

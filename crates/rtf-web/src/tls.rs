@@ -10,7 +10,6 @@ use rustls::pki_types::pem::PemObject;
 use rustls::pki_types::{CertificateDer, PrivateKeyDer};
 use sha2::{Digest, Sha256};
 
-/// There is no TLS.
 #[derive(Debug, thiserror::Error)]
 pub enum TlsError {
     /// A file cannot be read, or is not PEM.
@@ -18,21 +17,16 @@ pub enum TlsError {
     Read {
         /// What it should hold.
         what: &'static str,
-        /// The file.
         path: PathBuf,
-        /// Why.
         #[source]
         source: rustls::pki_types::pem::Error,
     },
-    /// The certificate and the key cannot be used.
     #[error("the certificate and the key cannot be used")]
     Unusable(#[source] rustls::Error),
-    /// No certificate could be made.
     #[error("cannot make a certificate")]
     Make(#[source] rcgen::Error),
 }
 
-/// What a server needs for TLS.
 #[derive(Debug)]
 pub struct Tls {
     /// For the listener.

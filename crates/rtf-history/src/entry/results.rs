@@ -14,7 +14,6 @@ use crate::{SuiteFileBase, TestAttributes, TestIdentity};
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResultEntry {
     pub identity: TestIdentity,
-    /// The type of its plug-in.
     pub plugin_type: String,
     pub tags: Vec<String>,
     /// Its values of a matrix, as name and value.
@@ -31,11 +30,9 @@ pub struct ResultEntry {
     pub problems: u32,
     /// The duration of a decisive attempt (the median over repetitions), in microseconds.
     pub duration_us: Option<i64>,
-    /// Why it did not pass.
     pub reason: Option<String>,
     /// The exclusive resources of its suite, separated by spaces.
     pub robot: String,
-    /// The hash of its plug-in.
     pub plugin_hash: Option<String>,
     pub source_hash: Option<String>,
     /// Its measurements and signals.

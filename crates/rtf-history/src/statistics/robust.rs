@@ -15,12 +15,10 @@ pub struct LearnedLimits {
     pub low: f64,
     /// median + k · deviation.
     pub high: f64,
-    /// The median of the values.
     pub median: f64,
     /// The median absolute deviation, scaled to a standard deviation. 0 if more than half of the
     /// values are equal: then both limits are the median.
     pub deviation: f64,
-    /// How many values were used.
     pub used: usize,
     /// How many values were left out because they are NaN or infinite.
     pub left_out: usize,
@@ -31,7 +29,6 @@ pub struct LearnedLimits {
 pub struct TooFewValues {
     /// How many finite values there are.
     pub used: usize,
-    /// How many are required.
     pub required: usize,
 }
 

@@ -7,70 +7,45 @@ use crate::entry::EntryError;
 /// The store cannot be used, or not with this run.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    /// There is no database.
     #[error("there is no history `{}`", location)]
-    Missing {
-        /// Where.
-        location: Location,
-    },
-    /// The database was written by a newer program.
+    Missing { location: Location },
     #[error(
         "the history `{}` is of version {found}, this program reads up to version {known}",
         location
     )]
     Newer {
-        /// Which.
         location: Location,
-        /// Its version.
         found: i64,
         /// The newest known version.
         known: usize,
     },
-    /// A database of another program.
     #[error("`{}` is a database of another program", location)]
-    Foreign {
-        /// Which.
-        location: Location,
-    },
+    Foreign { location: Location },
     /// The file is damaged, or no database.
     #[error("the history `{}` is damaged", location)]
     Corrupt {
-        /// Which.
         location: Location,
         /// What SQLite found.
         #[source]
         source: Box<dyn std::error::Error + Send + Sync>,
     },
-    /// Another process has written to the database for too long.
     #[error("the history `{}` is locked by another process", location)]
-    Locked {
-        /// Which.
-        location: Location,
-    },
+    Locked { location: Location },
     /// The database cannot be opened, read or written.
     #[error("cannot use the history `{}`", location)]
     Io {
-        /// Which.
         location: Location,
-        /// Why.
         #[source]
         source: Box<dyn std::error::Error + Send + Sync>,
     },
-    /// The record of a run cannot be stored.
     #[error(transparent)]
     Entry(#[from] EntryError),
     /// Another run with the same identity is stored.
     #[error("two runs have the id `{id}`")]
-    Conflict {
-        /// The identity.
-        id: String,
-    },
+    Conflict { id: String },
     /// Another campaign with the same identity is stored.
     #[error("two campaigns have the id `{id}`")]
-    SameCampaign {
-        /// The identity.
-        id: String,
-    },
+    SameCampaign { id: String },
 }
 
 impl StoreError {

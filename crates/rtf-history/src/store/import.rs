@@ -7,7 +7,6 @@ use super::json::json;
 use super::{Store, StoreError, rows, sql};
 use crate::entry::RunEntry;
 
-/// The effect of an import.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImportOutcome {
     /// The run is new.
@@ -91,7 +90,6 @@ enum Found {
     Fewer(i64),
     Same,
     Pruned,
-    /// Another run.
     Other,
 }
 

@@ -11,7 +11,6 @@ use super::database::{PostgresUrl, UrlError};
 pub enum Location {
     /// A SQLite database.
     File(PathBuf),
-    /// A PostgreSQL database.
     Postgres(Arc<PostgresUrl>),
 }
 

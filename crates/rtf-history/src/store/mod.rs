@@ -167,7 +167,6 @@ impl Store {
         kept.map(drop).map_err(|error| self.error(error))
     }
 
-    /// Where the database is.
     #[must_use]
     pub fn location(&self) -> &Location {
         &self.location

@@ -10,7 +10,6 @@ use crate::answers::RunInfo;
 /// Which runs to keep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Keep {
-    /// The newest runs.
     Newest(usize),
     /// Runs that started at this time or later.
     Since(Timestamp),

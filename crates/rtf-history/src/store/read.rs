@@ -50,12 +50,10 @@ pub struct StoreCounts {
     pub results: u64,
     /// Series of measurements and signals.
     pub series: u64,
-    /// Points of series.
     pub points: u64,
     /// Runs that are not stored because they were pruned, or merged from others.
     pub pruned: u64,
     pub campaigns: u64,
-    /// Episodes of campaigns.
     pub episodes: u64,
     pub pruned_campaigns: u64,
 }

@@ -69,7 +69,6 @@ fn with_tests<'a>(
     Ok(with_ids.collect())
 }
 
-/// The stored row of a test.
 struct StoredTest {
     id: i64,
     /// Type of the plug-in, tags and parameters.

@@ -8,12 +8,10 @@ use super::database::Batch;
 /// The stored state of a campaign with an identity.
 pub const FIND_CAMPAIGN: &str =
     "SELECT id, episodes, ended_us, started_us FROM campaign WHERE uid = $1";
-/// Whether the campaign was pruned.
 pub const FIND_PRUNED_CAMPAIGN: &str = "SELECT 1 FROM pruned_campaign WHERE uid = $1";
 /// The directories of stored and pruned campaigns.
 pub const CAMPAIGN_DIRECTORIES: &str =
     "SELECT directory FROM campaign UNION SELECT directory FROM pruned_campaign";
-/// Adds a campaign.
 pub const INSERT_CAMPAIGN: &str = "
 INSERT INTO campaign (uid, directory, name, file, suite_file, started_us, ended_us, ended,
   commit_hash, branch, dirty, author_time, ci_job, host, profile, settings, rtf, seed, space, claim,
@@ -22,7 +20,6 @@ INSERT INTO campaign (uid, directory, name, file, suite_file, started_us, ended_
 VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20,
   $21, $22, $23, $24, $25, $26, $27, $28, $29, $30, $31, $32)
 RETURNING id";
-/// Adds episodes.
 pub(super) const INSERT_EPISODES: Batch = Batch {
     head: "
 INSERT INTO episode (campaign_id, episode, seed, outcome, reason, duration_us, parameters)
@@ -33,10 +30,8 @@ VALUES",
 /// The parts of a campaign, in the order in which they are deleted.
 pub const DELETE_CAMPAIGN: [&str; 2] =
     ["DELETE FROM episode WHERE campaign_id = $1", "DELETE FROM campaign WHERE id = $1"];
-/// Remembers a campaign that was pruned.
 pub const INSERT_PRUNED_CAMPAIGN: &str = "
 INSERT INTO pruned_campaign (uid, directory) VALUES ($1, $2) ON CONFLICT (uid) DO NOTHING";
-/// Forgets that a campaign was pruned.
 pub const DELETE_PRUNED_CAMPAIGN: &str = "DELETE FROM pruned_campaign WHERE uid = $1";
 /// All campaigns, the oldest first.
 pub const CAMPAIGNS: &str = "
@@ -46,7 +41,6 @@ SELECT id, uid, directory, name, file, suite_file, started_us, ended_us, ended, 
 FROM campaign ORDER BY started_us, uid";
 /// The names of the parameters of a campaign.
 pub const CAMPAIGN_PARAMETERS: &str = "SELECT parameters FROM campaign WHERE id = $1";
-/// The episodes of a campaign.
 pub const EPISODES: &str = "
 SELECT episode, seed, outcome, reason, duration_us, parameters
 FROM episode WHERE campaign_id = $1 ORDER BY episode";
@@ -57,12 +51,10 @@ SELECT (SELECT COUNT(*) FROM campaign), (SELECT COUNT(*) FROM episode),
 
 /// The stored state of a run with an identity.
 pub const FIND_RUN: &str = "SELECT id, events, started FROM run WHERE uid = $1";
-/// Whether the run was pruned.
 pub const FIND_PRUNED: &str = "SELECT 1 FROM pruned WHERE uid = $1";
 /// The names of stored and pruned runs.
 pub const RUN_NAMES: &str = "SELECT name FROM run UNION SELECT name FROM pruned";
 
-/// Adds a run.
 pub const INSERT_RUN: &str = "
 INSERT INTO run (uid, name, started_us, duration_us, ended, green, passed, failed, error, crashed,
   timed_out, collapsed, skipped, interrupted, commit_hash, branch, dirty, author_time, ci_job,
@@ -89,7 +81,6 @@ pub const DELETE_UNUSED: [&str; 2] = [
 /// Remembers a run that is not stored: it was pruned, or merged from others.
 pub const INSERT_PRUNED: &str =
     "INSERT INTO pruned (uid, name) VALUES ($1, $2) ON CONFLICT (uid) DO NOTHING";
-/// Forgets that a run was pruned.
 pub const DELETE_PRUNED: &str = "DELETE FROM pruned WHERE uid = $1";
 
 /// Tests with their attributes.
@@ -124,7 +115,6 @@ RETURNING id, suite_file, suite, name, case_path",
 };
 /// Leads from a former name to the current one.
 pub const RENAME_TEST: &str = "UPDATE test SET renamed_to = $1 WHERE id = $2";
-/// Adds results of tests.
 pub(super) const INSERT_RESULTS: Batch = Batch {
     head: "
 INSERT INTO result (test_id, run_id, verdict, flaky, attempts, problems, duration_us, reason,
@@ -133,19 +123,16 @@ VALUES",
     columns: 11,
     tail: "",
 };
-/// The series of tests.
 pub(super) const FIND_SERIES: Batch = Batch {
     head: "SELECT id, kind, name, unit, test_id FROM series WHERE test_id IN (",
     columns: 1,
     tail: ")",
 };
-/// Adds series.
 pub(super) const INSERT_SERIES: Batch = Batch {
     head: "INSERT INTO series (test_id, kind, name, unit) VALUES",
     columns: 4,
     tail: " RETURNING id, kind, name, unit, test_id",
 };
-/// Adds points of series.
 pub(super) const INSERT_POINTS: Batch = Batch {
     head: "
 INSERT INTO point (test_id, run_id, series_id, value, min, max, count, not_finite, outside, low,
@@ -171,7 +158,6 @@ pub const RESULTS_OF_TEST: &str = "
 SELECT run_id, verdict, flaky, attempts, problems, duration_us, reason, robot, plugin_hash,
   source_hash
 FROM result WHERE test_id = $1";
-/// The result of a test in a run.
 pub const RESULT_OF_TEST: &str = "
 SELECT run_id, verdict, flaky, attempts, problems, duration_us, reason, robot, plugin_hash,
   source_hash
@@ -185,20 +171,17 @@ SELECT run_id, points FROM run_columns WHERE run_id BETWEEN $1 AND $2 ORDER BY r
 /// The tests with at least one result that is not a plain pass.
 pub const TESTS_WITH_PROBLEMS: &str =
     "SELECT DISTINCT test_id FROM result WHERE verdict <> 'passed' OR flaky = 1";
-/// The tests that passed in a run.
 pub const PASSED_TESTS_OF_RUN: &str =
     "SELECT test_id FROM result WHERE run_id = $1 AND verdict = 'passed'";
 pub const SERIES_OF_TEST: &str =
     "SELECT id, kind, name, unit FROM series WHERE test_id = $1 ORDER BY kind, name, unit";
 pub const SERIES: &str = "SELECT id, kind, name, unit, test_id FROM series ORDER BY id";
-/// The tests that have a series of this name.
 pub const TESTS_WITH_SERIES: &str = "SELECT DISTINCT test_id FROM series WHERE name = $1";
 pub const SERIES_NAMES: &str = "SELECT DISTINCT name FROM series ORDER BY name";
 /// The points of a test, in all its series.
 pub const POINTS_OF_TEST: &str = "
 SELECT run_id, series_id, value, min, max, count, not_finite, outside, low, high
 FROM point WHERE test_id = $1";
-/// Number of rows.
 pub const COUNTS: &str = "
 SELECT (SELECT COUNT(*) FROM run), (SELECT COUNT(*) FROM test), (SELECT COUNT(*) FROM result),
   (SELECT COUNT(*) FROM series), (SELECT COUNT(*) FROM point), (SELECT COUNT(*) FROM pruned)";

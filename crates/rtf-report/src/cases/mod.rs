@@ -39,7 +39,6 @@ pub(crate) struct CaseResult<'r> {
     pub duration: Duration,
     /// The index of the case that contains it.
     pub parent: Option<usize>,
-    /// Whether it contains cases.
     pub is_container: bool,
     /// Whether it has a problem that is not only that of a case that it contains.
     pub is_problem: bool,
@@ -60,7 +59,6 @@ impl CaseResult<'_> {
         self.record.map(|record| record.verdict().unwrap_or(Verdict::Interrupted))
     }
 
-    /// Why it did not pass.
     pub fn reason(&self) -> &str {
         match (self.record, self.verdict()) {
             (Some(record), _) if record.finished.is_none() => CUT_SHORT,

@@ -13,7 +13,6 @@ pub(crate) struct CaseTotals {
 }
 
 impl TestCases<'_> {
-    /// Number of cases by result.
     pub fn totals(&self) -> CaseTotals {
         let mut totals = CaseTotals::default();
         for result in &self.results {
@@ -29,12 +28,10 @@ impl TestCases<'_> {
 }
 
 impl CaseTotals {
-    /// Number of cases with this verdict.
     pub fn of(&self, verdict: Verdict) -> u64 {
         self.counts[verdict as usize]
     }
 
-    /// Number of cases of all tests of a run.
     pub fn of_run(record: &Record) -> Self {
         let mut totals = Self::default();
         let cases = record.tests.iter().filter_map(TestCases::of);

@@ -78,7 +78,6 @@ pub(super) fn unexpected(page: &mut ConsoleLines, options: &ConsoleOptions, reco
     }
 }
 
-/// Lists known failures.
 pub(super) fn known(page: &mut ConsoleLines, record: &Record) {
     let mut tests = record.tests.iter().filter(|test| known_failure::is_known(test)).peekable();
     if tests.peek().is_none() {

@@ -13,7 +13,6 @@ use crate::{escape, explain, known_failure, logs, words};
 /// The endings of recordings that a fixture can replay.
 const RECORDINGS: [&str; 3] = [".mcap", ".bag", ".tar.gz"];
 
-/// Lists the tests that did not pass.
 pub(super) fn show(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Record) {
     let failed: Vec<_> = record.tests.iter().filter(|test| is_failed(record, test)).collect();
     if failed.is_empty() {

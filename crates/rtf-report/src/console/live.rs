@@ -13,7 +13,6 @@ use super::{ConsoleOptions, Verbosity, fixture_values, hooks, questions, results
 use crate::explain::{self, Tone};
 use crate::{ReportError, cause, escape, logs, private_resources, words};
 
-/// Shows one event.
 pub(super) fn show(
     page: &mut ConsoleLines,
     options: &ConsoleOptions,

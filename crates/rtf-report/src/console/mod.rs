@@ -50,7 +50,6 @@ const PAGE: usize = 16 * 1024;
 /// … or after this time.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// Shows a run on the console.
 pub struct Console {
     options: ConsoleOptions,
     out: UntilDisconnect,

@@ -26,11 +26,8 @@ pub type RerunCommand = Box<dyn Fn(&Record, TestId, Option<&str>) -> Option<Stri
 /// the path is that of the recording. `None` if there is no suite for that.
 pub type ReplayCommand = Box<dyn Fn(&Record, TestId, &Path) -> Option<String> + Send>;
 
-/// Both commands.
 pub struct TestCommands {
-    /// The command that reruns a test.
     pub rerun: RerunCommand,
-    /// The command that replays the recording of a failed test.
     pub replay: ReplayCommand,
 }
 
@@ -43,16 +40,13 @@ impl TestCommands {
 }
 
 pub struct ConsoleOptions {
-    /// How much is shown during the run.
     pub verbosity: Verbosity,
     /// The run's directory for display; it contains the logs. `None` if
     /// nothing is kept.
     pub folder: Option<PathBuf>,
     /// Whether a progress bar is shown if standard error is a terminal.
     pub progress: bool,
-    /// Returns the command that reruns a failed test.
     pub rerun: RerunCommand,
-    /// Returns the command that replays the recording of a failed test.
     pub replay: ReplayCommand,
 }
 

@@ -107,12 +107,10 @@ impl ConsoleLines {
         self.text.len()
     }
 
-    /// What waits, as bytes.
     pub fn as_bytes(&self) -> &[u8] {
         self.text.as_bytes()
     }
 
-    /// Nothing waits any more.
     pub fn clear(&mut self) {
         self.text.clear();
     }

@@ -28,7 +28,6 @@ impl Progress {
         }
     }
 
-    /// No bar.
     pub fn hidden() -> Self {
         let (state, running) = (BarState::default(), Vec::new());
         Self { is_shown: false, state, running, begun: false }

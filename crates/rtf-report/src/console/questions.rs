@@ -19,7 +19,6 @@ pub struct AskedHere {
 /// Is called with the question that the person can answer from now on, if there is one.
 pub type Operator = Box<dyn FnMut(Option<AskedHere>) + Send>;
 
-/// The question at this terminal.
 #[derive(Default)]
 pub(super) struct QuestionPrompt {
     operator: Option<Operator>,

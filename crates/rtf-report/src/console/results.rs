@@ -62,7 +62,6 @@ pub(super) fn case_line(
     page.entry(word, &time, &escape::line(&name));
 }
 
-/// Shows the result of an attempt of a test.
 pub(super) fn test_finished(
     page: &mut ConsoleLines,
     options: &ConsoleOptions,

@@ -12,7 +12,6 @@ use crate::{cause, escape, words};
 /// Maximum number of skipped tests that are listed per reason.
 const NAMES: usize = 5;
 
-/// Lists tests that the runner skipped.
 pub(super) fn by_runner(page: &mut ConsoleLines, record: &Record) {
     let mut reasons: BTreeMap<&str, Vec<TestId>> = BTreeMap::new();
     for test in &record.tests {

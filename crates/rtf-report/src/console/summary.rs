@@ -17,7 +17,6 @@ const HISTOGRAM: usize = 10;
 /// Maximum number of leaked processes that are listed.
 const PROCESSES: usize = 50;
 
-/// Shows the summary.
 pub(super) fn show(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Record) {
     hooks::summary(page, options, record);
     problems(page, record);

@@ -6,7 +6,6 @@ use rtf_model::{Location, Record, SuiteRecord, TestRecord};
 
 use crate::explain;
 
-/// A place in a file of the repository.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct RepositoryLocation {
     /// The file, from the repository's root, with `/`.
@@ -21,7 +20,6 @@ pub(crate) struct RepositoryLocation {
 pub(crate) struct Roots<'a> {
     /// The directory in which the run was started.
     folder: &'a Path,
-    /// The repository's root.
     repository: &'a Path,
 }
 

@@ -18,7 +18,6 @@ pub(super) fn is_problem(record: &Record, test: &TestRecord) -> bool {
     !known_failure::is_known(test) && (is_red || known_failure::red_reason(record, test).is_some())
 }
 
-/// The findings of a test.
 pub(super) fn of(record: &Record, test: &TestRecord, roots: &Roots<'_>) -> Vec<Finding> {
     if !is_problem(record, test) {
         return Vec::new();

@@ -71,7 +71,6 @@ pub fn parse_event(line: &[u8]) -> serde_json::Result<Event> {
 /// The fields that decide whether an event is needed, without parsing the rest.
 #[derive(Debug, Deserialize)]
 pub struct EventHeader {
-    /// The event's number.
     pub seq: u64,
     /// When it happened, in microseconds since the run started.
     pub at: u64,

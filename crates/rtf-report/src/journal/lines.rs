@@ -7,11 +7,9 @@ use rtf_model::{
     StreamChecker,
 };
 
-/// A journal was written by a newer runner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the journal is of version {found}, this program reads up to version {EVENTS_VERSION}")]
 pub struct NewerVersion {
-    /// Its version.
     pub found: u32,
 }
 

@@ -27,13 +27,11 @@ impl WriteBuffer {
         &self.bytes[..self.used]
     }
 
-    /// Takes all lines away.
     pub fn clear(&mut self) {
         self.used = 0;
         self.bytes.truncate(SIZE);
     }
 
-    /// Adds the line of an event.
     pub fn add(&mut self, event: &Event) -> io::Result<()> {
         let length = loop {
             match write(event, &mut self.bytes[self.used..])? {
@@ -77,7 +75,6 @@ fn object(event: &Event, room: &mut Room<'_>) -> serde_json::Result<()> {
     Ok(())
 }
 
-/// Room for a line.
 struct Room<'a> {
     bytes: &'a mut [u8],
     used: usize,

@@ -22,40 +22,27 @@ pub struct Stored {
 /// A journal cannot be read at all.
 #[derive(Debug, thiserror::Error)]
 pub enum JournalError {
-    /// The file cannot be opened or read.
     #[error("cannot read the journal `{}`", path.display())]
     Read {
-        /// Which.
         path: PathBuf,
-        /// Why.
         #[source]
         source: io::Error,
     },
     /// No line of it is an event.
     #[error("`{}` is not a journal: {first}", path.display())]
     NotAJournal {
-        /// Which.
         path: PathBuf,
         /// What is wrong with its first line.
         first: Damage,
     },
-    /// It was written by a newer runner.
     #[error(
         "the journal `{}` is of version {found}, this program reads up to version {EVENTS_VERSION}",
         path.display()
     )]
-    Version {
-        /// Which.
-        path: PathBuf,
-        /// Its version.
-        found: u32,
-    },
+    Version { path: PathBuf, found: u32 },
     /// It is not what it was when it was read before.
     #[error("the journal `{}` has changed since it was read", path.display())]
-    Changed {
-        /// Which.
-        path: PathBuf,
-    },
+    Changed { path: PathBuf },
     /// A report made from it could not be written.
     #[error(transparent)]
     Report(#[from] ReportError),

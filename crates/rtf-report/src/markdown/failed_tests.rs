@@ -19,7 +19,6 @@ const NAMES: usize = 200;
 /// Maximum number of the last messages, and of the last lines of output, of a test.
 const LAST: usize = 15;
 
-/// Lists the failed tests.
 pub(super) fn show(
     page: &mut String,
     record: &Record,

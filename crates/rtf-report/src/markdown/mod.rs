@@ -32,7 +32,6 @@ pub struct MarkdownOptions<'a> {
     pub dir: Option<&'a Path>,
     /// The address of the run's results: an artefact, or a page.
     pub url: Option<&'a str>,
-    /// Returns the commands that rerun and replay a failed test.
     pub commands: TestCommands,
 }
 
@@ -109,7 +108,6 @@ fn list<T>(
     *page += "\n";
 }
 
-/// The cells of a row of a table.
 fn row(page: &mut String, cells: &[String]) {
     *page += &format!("| {} |\n", cells.join(" | "));
 }

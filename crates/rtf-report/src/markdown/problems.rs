@@ -184,7 +184,6 @@ pub(super) fn hook_runs(page: &mut String, record: &Record) {
     }
 }
 
-/// Warnings about the suites.
 pub(super) fn warnings(page: &mut String, record: &Record) {
     if record.warnings.is_empty() {
         return;

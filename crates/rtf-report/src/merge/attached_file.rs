@@ -6,7 +6,6 @@ use rtf_model::EventKind;
 
 use super::MergeInput;
 
-/// A file that a test attached.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AttachedFile {
     /// The directory of the run in which it was attached.

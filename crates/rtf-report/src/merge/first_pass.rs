@@ -30,7 +30,6 @@ pub(super) struct FirstPass {
     pub ends: RunEnds,
 }
 
-/// How the runs ended.
 #[derive(Debug, Default)]
 pub(super) struct RunEnds {
     interrupted: Option<String>,

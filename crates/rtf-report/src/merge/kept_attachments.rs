@@ -11,7 +11,6 @@ use siphasher::sip::SipHasher13;
 /// Which attachments the merged run keeps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Keep {
-    /// All.
     #[default]
     All,
     /// Those of some attempts.
@@ -27,7 +26,6 @@ pub enum Keep {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("expected `all`, `failed`, `sample:NUMBER` or several of them, found `{found}`")]
 pub struct UnknownKeep {
-    /// What was found instead.
     pub found: String,
 }
 
@@ -78,7 +76,6 @@ pub(super) struct OpenAttempts {
 }
 
 impl OpenAttempts {
-    /// Of the run with this place.
     pub fn of(part: usize) -> Self {
         Self { part, open: BTreeMap::new() }
     }
@@ -122,7 +119,6 @@ pub(super) struct KeptAttempts {
 }
 
 impl KeptAttempts {
-    /// Without any attempt.
     pub fn of(keep: Keep) -> Self {
         Self { keep, ..Self::default() }
     }

@@ -27,7 +27,6 @@ struct Division {
 }
 
 impl JoinedManifests {
-    /// Adds the next run.
     pub fn add(&mut self, run: &RunStarted) {
         if self.ids.is_empty() {
             self.started_at = run.started_at.clone();

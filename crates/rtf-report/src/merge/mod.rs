@@ -59,7 +59,6 @@ pub struct MergeInput {
 /// The values of the merged run itself.
 #[derive(Clone, Debug)]
 pub struct Header {
-    /// Its name.
     pub run: String,
     /// The version of the program.
     pub rtf: String,
@@ -77,12 +76,10 @@ pub struct Mergeable {
     pass: FirstPass,
 }
 
-/// How runs are merged.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MergeOptions {
     /// Whether parts of a division may be missing.
     pub partial: bool,
-    /// Which attachments are kept.
     pub keep: Keep,
 }
 

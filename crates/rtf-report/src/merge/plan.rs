@@ -137,7 +137,6 @@ impl JoinedPlans {
         &self.plan
     }
 
-    /// The tests that more than one run has.
     pub fn duplicates(&self) -> &[Duplicate] {
         &self.duplicates
     }

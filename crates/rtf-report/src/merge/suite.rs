@@ -8,7 +8,6 @@ use super::lives::Lives;
 use super::piece::{Parts, Piece};
 use crate::journal::JournalError;
 
-/// A suite of the merged run.
 #[derive(Debug, Default)]
 pub(super) struct MergedSuite {
     /// Its waits for locks, with their new ids.

@@ -19,7 +19,6 @@ impl Attributes {
         self
     }
 
-    /// Adds a whole number.
     pub fn whole(mut self, key: &str, value: u64) -> Self {
         // 64-bit numbers are strings in the JSON of protobuf.
         self.0.push(json!({"key": key, "value": {"intValue": value.to_string()}}));
@@ -34,13 +33,11 @@ impl Attributes {
         self
     }
 
-    /// Adds a flag.
     pub fn flag(mut self, key: &str, value: bool) -> Self {
         self.0.push(json!({"key": key, "value": {"boolValue": value}}));
         self
     }
 
-    /// The attributes of the format.
     pub fn into_json(self) -> Value {
         Value::Array(self.0)
     }
@@ -89,7 +86,6 @@ pub fn of_measurement(measurement: &Measurement) -> Attributes {
         .number("rtf.high", measurement.high)
 }
 
-/// Of a fault that was injected.
 pub fn of_fault(record: &FaultRecord) -> Attributes {
     let fault = &record.fault;
     Attributes::default()

@@ -12,7 +12,6 @@ use super::attributes::{self, Attributes, result_status};
 use super::trace::{Span, Status, Trace};
 use crate::{outcome, words};
 
-/// The spans of a run.
 pub fn of(record: &Record, run: &RunStarted) -> Vec<Value> {
     let mut trace = Trace::new(run);
     let status = if record.is_green() { Status::Ok } else { Status::Error(outcome::word(record)) };

@@ -9,7 +9,6 @@ use super::attributes::Attributes;
 /// More events of a span are counted: collectors and their stores limit the size of a span.
 const EVENTS: usize = 128;
 
-/// The status of a span.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Status {
     /// Neither good nor bad: skipped.
@@ -20,7 +19,6 @@ pub enum Status {
     Error(String),
 }
 
-/// A span of the trace.
 #[derive(Debug)]
 pub struct Span {
     pub name: String,
@@ -86,7 +84,6 @@ impl Trace {
         self.epoch.saturating_add(at.0.saturating_mul(1000)).to_string()
     }
 
-    /// The spans of the format.
     pub fn into_spans(self) -> Vec<Value> {
         self.spans
     }

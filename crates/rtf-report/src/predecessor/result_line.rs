@@ -7,7 +7,6 @@ use crate::escape;
 pub(super) enum Word {
     /// The run, a suite or a test begins or ends.
     Progress,
-    /// Information only.
     Info,
     /// A warning, which does not count.
     Warn,
@@ -33,7 +32,6 @@ impl Word {
 /// One line; a message may have several.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ResultLine {
-    /// What it means.
     pub word: Word,
     /// What stands after the word.
     pub text: String,

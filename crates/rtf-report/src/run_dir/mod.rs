@@ -28,7 +28,6 @@ const TRIES: u32 = 100;
 /// After this time the name is another one: a step of its last digits.
 const NEXT_NAME: Duration = Duration::from_micros(16);
 
-/// The directory of one run.
 #[derive(Clone, Debug)]
 pub struct RunDir {
     /// Its path, below the results directory as the user named it.
@@ -58,24 +57,19 @@ impl RunDir {
     }
 }
 
-/// The directory of a run cannot be created.
 #[derive(Debug, thiserror::Error)]
 pub enum RunDirError {
     /// A directory cannot be created or written.
     #[error("cannot create the results directory `{}`", path.display())]
     Create {
-        /// Which.
         path: PathBuf,
-        /// Why.
         #[source]
         source: io::Error,
     },
     /// A link to the run cannot be replaced.
     #[error("cannot make `{}` lead to this run", path.display())]
     Latest {
-        /// The link.
         path: PathBuf,
-        /// Why.
         #[source]
         source: io::Error,
     },

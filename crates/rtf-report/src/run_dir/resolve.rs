@@ -11,22 +11,16 @@ const LISTED: usize = 5;
 /// No such run.
 #[derive(Debug, thiserror::Error)]
 pub enum ResolveError {
-    /// There is no run of this name.
     #[error("there is no run `{run}`")]
     Unknown {
-        /// What was asked for.
         run: String,
         /// Where it was looked for.
         looked: Vec<PathBuf>,
         /// The newest runs that there are, the newest first.
         newest: Vec<String>,
     },
-    /// There are no runs at all.
     #[error("there are no runs in `{}`", results.display())]
-    Empty {
-        /// The results directory.
-        results: PathBuf,
-    },
+    Empty { results: PathBuf },
 }
 
 impl ResolveError {

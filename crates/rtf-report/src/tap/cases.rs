@@ -41,7 +41,6 @@ struct Subtests<'a> {
     inner: Vec<Vec<usize>>,
 }
 
-/// The cases at the top, and those in each case, one place later.
 fn inner(cases: &TestCases<'_>) -> Vec<Vec<usize>> {
     let mut inner = vec![Vec::new(); cases.results.len() + 1];
     let mut depths: Vec<usize> = Vec::with_capacity(cases.results.len());

@@ -6,7 +6,6 @@ use super::lines::TextLines;
 use crate::explain::{self, Tone};
 use crate::{escape, growth, words};
 
-/// Writes a fixture.
 pub(super) fn show(lines: &mut TextLines, fixture: &FixtureRecord) {
     let plan = &fixture.plan;
     lines.fact(2, "fixture", &format!("{} ({})", plan.name, plan.plugin_type));

@@ -6,7 +6,6 @@ use super::lines::TextLines;
 use crate::explain::{self, Extent};
 use crate::{cause, words};
 
-/// Writes a hook.
 pub(super) fn show(lines: &mut TextLines, record: &Record, hook: &HookRecord) {
     let on: Vec<_> = hook.plan.on.iter().map(|trigger| Trigger::as_str(*trigger)).collect();
     lines.fact(2, "hook", &format!("{} (on {})", hook.plan.name, on.join(", ")));

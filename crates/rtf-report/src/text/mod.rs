@@ -135,7 +135,6 @@ fn show_problems(lines: &mut TextLines, record: &Record, suite: &SuiteRecord) {
     }
 }
 
-/// How the run ended.
 fn show_end(lines: &mut TextLines, record: &Record) {
     if let Some(reason) = record.interrupted() {
         lines.fact(0, "interrupted", reason);

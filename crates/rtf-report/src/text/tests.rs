@@ -7,7 +7,6 @@ use super::lines::TextLines;
 use crate::explain::{self, Extent};
 use crate::{cause, escape, known_failure, words};
 
-/// Writes a test.
 pub(super) fn show(lines: &mut TextLines, record: &Record, test: &TestRecord) {
     let plan = &test.plan;
     lines.fact(2, "test", &format!("{} ({})", plan.name, plan.plugin_type));

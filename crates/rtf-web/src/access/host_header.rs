@@ -32,7 +32,6 @@ impl Hosts {
         Self { address, names, given, remote }
     }
 
-    /// The port of this server.
     #[must_use]
     pub fn port(&self) -> u16 {
         self.address.port()

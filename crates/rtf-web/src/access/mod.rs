@@ -46,7 +46,6 @@ pub enum Who {
 pub struct Rules {
     /// Whether other machines may connect: reading then needs the token, too.
     pub remote: bool,
-    /// Whether TLS is spoken.
     pub tls: bool,
 }
 
@@ -89,7 +88,6 @@ impl AccessLog {
     }
 }
 
-/// A client has sent a wrong token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WrongToken {
     pub client: IpAddr,
@@ -121,7 +119,6 @@ impl Access {
         Ok(Self { token, session, cookie, hosts, remote, tls, guesses, log })
     }
 
-    /// Whether reading needs the token.
     #[must_use]
     pub fn token_to_read(&self) -> bool {
         self.remote
@@ -139,7 +136,6 @@ impl Access {
         false
     }
 
-    /// Who makes the request with these headers.
     async fn who(&self, client: IpAddr, headers: &HeaderMap) -> Who {
         let text = |value: &HeaderValue| value.to_str().ok().map(str::to_owned);
         let bearer = headers.get(header::AUTHORIZATION).and_then(text);

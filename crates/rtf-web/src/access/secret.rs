@@ -15,33 +15,21 @@ const SHORTEST: usize = 16;
 /// How much of a token's file is read: no token is that long.
 const LONGEST: u64 = 64 * 1024;
 
-/// There is no token.
 #[derive(Debug, thiserror::Error)]
 pub enum TokenError {
     /// The system has no random bytes.
     #[error("cannot make a token: {0}")]
     Random(getrandom::Error),
-    /// The token's file cannot be read.
     #[error("cannot read the token from `{}`", path.display())]
     Read {
-        /// Which.
         path: PathBuf,
-        /// Why.
         #[source]
         source: std::io::Error,
     },
-    /// Others can read the token's file.
     #[error("the token in `{}` can be read by other users", path.display())]
-    Open {
-        /// Which.
-        path: PathBuf,
-    },
-    /// The file's content is not a token.
+    Open { path: PathBuf },
     #[error("the token in `{}` is not one line of at least {SHORTEST} visible ASCII characters", path.display())]
-    Weak {
-        /// Which.
-        path: PathBuf,
-    },
+    Weak { path: PathBuf },
 }
 
 /// A token, or what a session's cookie holds.

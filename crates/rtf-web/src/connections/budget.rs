@@ -20,7 +20,6 @@ pub struct ConnectionSlot {
 }
 
 impl Budget {
-    /// Room for so many connections.
     #[must_use]
     pub fn new(total: usize, per_address: usize) -> Self {
         Self { used: Arc::default(), total, per_address }

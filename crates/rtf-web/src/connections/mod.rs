@@ -32,9 +32,7 @@ const CONNECTIONS: (u64, u64) = (16, 256);
 /// How many connections there may be, and how long one may do nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Connections in total.
     pub connections: usize,
-    /// Connections of one client's address.
     pub per_address: usize,
     /// How long a client may take to send the head of a request.
     pub head: Duration,

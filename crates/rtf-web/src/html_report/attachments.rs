@@ -77,7 +77,6 @@ impl AttachmentFiles {
     }
 }
 
-/// The directory of a file.
 fn parent(file: &Path) -> PathBuf {
     let parent = file.parent().filter(|parent| !parent.as_os_str().is_empty());
     parent.unwrap_or(Path::new(".")).to_owned()

@@ -23,7 +23,6 @@ pub struct Chunks<'w> {
 }
 
 impl<'w> Chunks<'w> {
-    /// Writes chunks to `out`.
     pub fn new(out: &'w mut dyn Write) -> Self {
         Self { out, pending: Vec::new(), places: BTreeMap::new(), count: 0 }
     }

@@ -15,7 +15,6 @@ pub struct Excerpt<T> {
     omitted: u64,
 }
 
-/// Limits of an excerpt.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// The maximum size of the first entries, and of the last ones. At least one entry is
@@ -25,7 +24,6 @@ pub struct Limits {
     pub important: usize,
 }
 
-/// An entry of an excerpt.
 pub trait Entry {
     /// Its size, in the unit of the limits.
     fn size(&self) -> usize {
@@ -39,7 +37,6 @@ pub trait Entry {
 }
 
 impl<T: Entry> Excerpt<T> {
-    /// An empty excerpt.
     pub fn new(limits: Limits) -> Self {
         Self {
             first: Vec::new(),

@@ -29,14 +29,12 @@ use template::Template;
 /// The version of the data's format.
 const FORMAT: u32 = 1;
 
-/// What a report is made of.
 #[derive(Clone, Copy)]
 pub struct ReportSource<'a> {
     /// The journal of the run, in the run directory.
     pub journal: &'a Path,
     /// The report's file, next to which large attachments are; `None`: standard output.
     pub output: Option<&'a Path>,
-    /// The commands that rerun and replay a test.
     pub commands: &'a TestCommands,
     /// The run directory for display.
     pub dir: Option<&'a Path>,

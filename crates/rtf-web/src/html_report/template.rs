@@ -11,9 +11,7 @@ const DATA: &str = "<!--rtf-data-->";
 /// The page before and after the data.
 #[derive(Debug)]
 pub struct Template {
-    /// Before the data.
     pub head: Cow<'static, str>,
-    /// After the data.
     pub tail: Cow<'static, str>,
 }
 

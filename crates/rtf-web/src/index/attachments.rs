@@ -17,7 +17,6 @@ pub struct AttachmentIndex {
 /// The test, the repetition and the attempt.
 type AttemptKey = (TestId, u32, u32);
 
-/// The name and media type of an attachment.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AttachmentInfo {
     pub name: Box<str>,
@@ -48,7 +47,6 @@ impl AttachmentIndex {
         self.recordings.get(&key).map(|path| &**path)
     }
 
-    /// The description of the file at this path.
     #[must_use]
     pub fn of(&self, path: &str) -> Option<&AttachmentInfo> {
         self.files.get(path)

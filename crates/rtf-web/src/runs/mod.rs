@@ -29,7 +29,6 @@ const CURRENT_AMONG: usize = 20;
 #[derive(Debug)]
 pub struct Run {
     pub name: String,
-    /// The results directory.
     results: PathBuf,
     index: Mutex<Index>,
 }
@@ -41,7 +40,6 @@ impl Run {
         Ok(Self { name: name.to_owned(), results: results.to_owned(), index })
     }
 
-    /// Its directory.
     #[must_use]
     pub fn dir(&self) -> PathBuf {
         self.results.join(&self.name)

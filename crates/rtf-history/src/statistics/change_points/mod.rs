@@ -80,7 +80,6 @@ impl Default for Options {
     }
 }
 
-/// The changes of a series.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ChangePoints {
     /// In the order of the series.
@@ -110,7 +109,6 @@ pub struct ChangePoint {
     pub size: Option<Size>,
 }
 
-/// How large a change is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Size {
     /// The difference of the means as a fraction of the basis. Positive if the mean increased.

@@ -9,7 +9,6 @@ const RESOLUTION: f64 = 16.0 * f64::EPSILON;
 /// A run of values between two changes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Segment {
-    /// How many values it has.
     pub count: usize,
     /// The mean, in the unit of the values.
     pub mean: f64,
@@ -18,7 +17,6 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// The segment of these values.
     #[expect(clippy::cast_precision_loss, reason = "counts of values are far below 2^53")]
     pub(super) fn of(values: &[f64]) -> Self {
         let first = values.first().copied().unwrap_or(0.0);

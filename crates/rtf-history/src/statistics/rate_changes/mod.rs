@@ -26,7 +26,6 @@ const REVISIONS: usize = 10;
 pub struct Counts {
     /// How many episodes passed.
     pub passed: u64,
-    /// How many failed.
     pub failed: u64,
 }
 

@@ -35,7 +35,6 @@ impl Batch {
         })
     }
 
-    /// The statement for a number of rows.
     pub fn sql(&self, rows: usize) -> String {
         let mut sql = self.head.to_owned();
         for row in 0..rows {

@@ -11,7 +11,6 @@ const REPLACEMENTS: [(&str, &str); 6] = [
     (" WITHOUT ROWID", ""),
 ];
 
-/// A migration for PostgreSQL.
 pub(super) fn postgres(migration: &str) -> String {
     let replace = |text: String, (from, to): (&str, &str)| text.replace(from, to);
     REPLACEMENTS.into_iter().fold(migration.to_owned(), replace)

@@ -97,7 +97,6 @@ impl Database {
         }
     }
 
-    /// Executes a statement.
     pub fn execute(&self, sql: &str, values: &[Value<'_>]) -> Result<(), DatabaseError> {
         self.for_each(sql, values, &mut |_| Ok(()))
     }

@@ -41,10 +41,8 @@ pub struct PostgresUrl {
 /// An address is invalid. The message does not repeat it, because it may contain a password.
 #[derive(Debug, thiserror::Error)]
 pub enum UrlError {
-    /// It is no address of a PostgreSQL database.
     #[error("the address of the history is not valid: `postgres://USER@HOST/DATABASE` is expected")]
     Invalid,
-    /// The encryption is not known.
     #[error("unknown `sslmode`: `disable`, `prefer`, `require` or `verify-full` is expected")]
     SslMode,
 }

@@ -100,12 +100,10 @@ pub(crate) enum Row<'a> {
 }
 
 impl Row<'_> {
-    /// The value of a column.
     pub fn get<T: Column>(&self, index: usize) -> Result<T, DatabaseError> {
         T::read(self, index)
     }
 
-    /// The bytes of a column.
     pub fn bytes(&self, index: usize) -> Result<&[u8], DatabaseError> {
         Ok(match self {
             Self::Sqlite(row) => row.get_ref(index)?.as_blob().map_err(rusqlite::Error::from)?,
