@@ -11,9 +11,7 @@ use crate::{EpisodeResult, Ledger};
 
 /// A parameter with more different numbers is divided into bins.
 const MAX_WORDS: usize = 8;
-/// The number of bins of a parameter.
 const BINS: usize = 6;
-/// How many permutations of the results are tried.
 const PERMUTATIONS: u32 = 999;
 
 /// An episode and whether it passed.
@@ -24,9 +22,7 @@ pub type Sample<'a> = (&'a Episode, bool);
 pub struct Cell {
     /// The value, or the range of values.
     pub values: String,
-    /// The number of episodes.
     pub episodes: u64,
-    /// How many of them passed.
     pub passed: u64,
     /// The rate with its Wilson interval at 95 % confidence; `None` without episodes.
     pub rate: Option<Rate>,
@@ -35,7 +31,6 @@ pub struct Cell {
 /// The rates by the values of a parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ByParameter {
-    /// The name of the parameter.
     pub name: String,
     /// Pearson's X² of the results in the cells: 0 if all cells have the same rate.
     pub chi_square: f64,

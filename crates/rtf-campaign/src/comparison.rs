@@ -12,7 +12,7 @@ pub type MeasurementKey = (String, String, String);
 /// one counts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EpisodeValues {
-    /// Whether it passed; `None` without a result.
+    /// `None` without a result.
     pub passed: Option<bool>,
     /// Finite values.
     pub values: BTreeMap<MeasurementKey, f64>,
@@ -23,23 +23,19 @@ pub struct EpisodeValues {
 pub struct Comparison {
     /// Episodes with a result in both versions.
     pub pairs: u64,
-    /// Episodes that passed in both.
     pub both_passed: u64,
     /// Episodes that passed in the first version only.
     pub only_first: u64,
     /// Episodes that passed in the second version only.
     pub only_second: u64,
-    /// Episodes that passed in neither.
     pub none_passed: u64,
     /// Episodes without a result in one of the versions.
     pub without_pair: u64,
     /// McNemar's exact test of the results.
     pub results: PairedComparison,
-    /// The measurements, each with the number of pairs.
     pub measurements: Vec<MeasurementComparison>,
 }
 
-/// How a measurement differs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MeasurementComparison {
     pub test: String,

@@ -22,15 +22,12 @@ pub enum EpisodeResult {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// The claim holds.
     Passed,
-    /// The claim does not hold.
     Failed,
     /// More episodes are necessary.
     Undecided,
 }
 
-/// The judgement of the results so far.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
     /// The verdict. With a fixed number of episodes, `undecided` until all have results.
@@ -39,18 +36,14 @@ pub struct Judgement {
     pub is_final: bool,
     /// The number of episodes on which the verdict is based, from the first one on.
     pub episodes: usize,
-    /// How many of them passed.
     pub passed: u64,
-    /// How many failed.
     pub failed: u64,
-    /// How many have no result.
     pub without_result: u64,
     /// The rate of passed episodes with its interval, from the case that all episodes without a
     /// result failed to the case that all passed. `None` if no episode has a result.
     pub rate: Option<Rate>,
 }
 
-/// Judges the results of a campaign.
 #[derive(Clone, Copy, Debug)]
 pub struct Judge {
     claimed: f64,
@@ -74,7 +67,6 @@ impl Judge {
         Self::of(campaign.claim.rate, confidence, campaign.stop, planned)
     }
 
-    /// A judge of a claimed rate with a confidence and a stopping rule.
     #[must_use]
     pub fn of(
         claimed: f64,
@@ -152,18 +144,15 @@ impl Judge {
         matches!(self.rule, Rule::Fixed { .. })
     }
 
-    /// The number of planned episodes.
     pub(crate) fn planned(&self) -> u64 {
         self.planned as u64
     }
 
-    /// The verdict after a fixed number of episodes.
     pub(crate) fn decide_fixed(&self, passed: u64, episodes: u64) -> Option<Verdict> {
         let Rule::Fixed { confidence } = self.rule else { return None };
         self.verdict_of(&exact_rate(passed, episodes, confidence)?)
     }
 
-    /// The verdict of a sequential rule.
     pub(crate) fn decide_sequentially(&self, passed: u64, episodes: u64) -> Option<Verdict> {
         match &self.rule {
             Rule::Fixed { .. } => None,

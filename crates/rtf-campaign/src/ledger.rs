@@ -110,7 +110,6 @@ impl Ledger {
         parts
     }
 
-    /// Whether episodes are open.
     #[must_use]
     pub fn any_open(&self) -> bool {
         !self.open.is_empty()
@@ -139,7 +138,6 @@ impl Ledger {
         &self.episodes
     }
 
-    /// Whether the bench does not work.
     #[must_use]
     pub fn is_bench_broken(&self) -> bool {
         self.bench_in_succession >= MAX_BENCH_RESULTS

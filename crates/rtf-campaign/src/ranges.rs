@@ -14,7 +14,6 @@ pub struct ParameterRange {
     pub name: String,
     #[serde(flatten)]
     pub values: Values,
-    /// The nominal value.
     pub nominal: String,
 }
 
@@ -34,7 +33,6 @@ pub enum Values {
         /// The highest value.
         high: f64,
     },
-    /// Normally distributed numbers.
     Normal {
         mean: f64,
         /// The standard deviation.
@@ -102,7 +100,6 @@ fn of_distribution(
     ParameterRange { name: name.to_owned(), values, nominal }
 }
 
-/// Whether values of all parameters meet the constraints.
 #[must_use]
 pub fn meet_constraints(campaign: &Campaign, parameters: &[Parameter]) -> bool {
     let mut number = |name: &str| {

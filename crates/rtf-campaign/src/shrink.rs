@@ -16,7 +16,6 @@ const PRECISION: f64 = 1.0 / 64.0;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Change {
     pub name: String,
-    /// The nominal value.
     pub nominal: String,
     /// The value of the episode.
     pub value: String,
@@ -28,7 +27,6 @@ pub struct Change {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct ShrunkChange {
     pub name: String,
-    /// The nominal value.
     pub nominal: String,
     /// A value that fails, with the values of the other changes.
     pub value: String,

@@ -1,6 +1,5 @@
 //! Why pictures cannot be compared, and the limits of their sizes.
 
-/// The most pixels of a picture.
 pub const MAX_PIXELS: u64 = 1 << 24;
 
 /// The fewest pixels of a row or a column: the size of a window.
@@ -9,19 +8,14 @@ pub const MIN_SIDE: u32 = 11;
 /// Why pictures cannot be compared.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
-    /// The file is neither PNG nor JPEG.
     #[error("it is neither PNG nor JPEG")]
     Format,
-    /// The file is damaged.
     #[error("it is damaged: {0}")]
     Damaged(String),
-    /// It has too many pixels.
     #[error("it has {0} × {1} pixels, the limit is {MAX_PIXELS} pixels")]
     TooLarge(u32, u32),
-    /// It is smaller than a window.
     #[error("it has {0} × {1} pixels, expected at least {MIN_SIDE} × {MIN_SIDE}")]
     TooSmall(u32, u32),
-    /// The sizes differ.
     #[error("it has {} × {} pixels, the reference {} × {}", .got.0, .got.1, .expected.0, .expected.1)]
     Sizes {
         /// The width and the height of the picture.
@@ -29,7 +23,6 @@ pub enum PictureError {
         /// Those of the reference.
         expected: (u32, u32),
     },
-    /// A picture cannot be written.
     #[error("the difference cannot be written: {0}")]
     Write(String),
 }

@@ -14,7 +14,6 @@ use crate::picture_error::PictureError;
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 const JPEG: &[u8] = b"\xff\xd8\xff";
 
-/// The format of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Format {
     Png,
@@ -46,7 +45,6 @@ impl Pixels {
         Self { size, values: values.map(|(column, row)| colour(column, row)).collect() }
     }
 
-    /// The pixel at a column and a row.
     pub fn at(&self, column: u32, row: u32) -> [u8; 3] {
         self.row(row)[column as usize]
     }
@@ -109,7 +107,6 @@ impl Pixels {
         Ok(Self { size, values: colours(&decoder.decode().map_err(damaged)?) })
     }
 
-    /// Its PNG file.
     pub fn to_png(&self) -> Result<Vec<u8>, PictureError> {
         let mut file = Vec::new();
         let mut encoder = Encoder::new(&mut file, self.size.0, self.size.1);

@@ -7,7 +7,6 @@ use crate::{Thinned, Trajectory, TrajectoryError};
 /// The media type of the text, as an attachment of a test.
 pub const MEDIA_TYPE: &str = "text/vnd.rtf.trajectory";
 
-/// The first line.
 const HEADER: &str = "# rtf trajectory 1";
 /// The line before the points.
 const COLUMNS: &str = "time,value";
@@ -17,7 +16,6 @@ const COLUMNS: &str = "time,value";
 pub struct Reference {
     /// Names and texts of the comments: `signal`, `unit`, `run`, …, in order.
     pub fields: Vec<(String, String)>,
-    /// The points.
     pub trajectory: Trajectory,
     time_decimals: usize,
     decimals: usize,
@@ -26,13 +24,10 @@ pub struct Reference {
 /// Why a text is no stored trajectory.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ParseError {
-    /// The first line is another one.
     #[error("line 1: expected `{HEADER}`")]
     Header,
-    /// A line is neither a comment nor a point.
     #[error("line {0}: expected a time and a value, separated by a comma")]
     Point(usize),
-    /// The points are no trajectory.
     #[error(transparent)]
     Points(#[from] TrajectoryError),
 }
@@ -48,7 +43,6 @@ impl Reference {
         Ok(Self { fields, trajectory, time_decimals, decimals })
     }
 
-    /// Returns a field.
     #[must_use]
     pub fn field(&self, name: &str) -> Option<&str> {
         let found = self.fields.iter().find(|(known, _)| known == name);

@@ -19,7 +19,6 @@ const STABILISERS: (f64, f64) = (2.55 * 2.55, 7.65 * 7.65);
 /// Sums of a row: both means, both squares, the product.
 type Moments = [Vec<f64>; 5];
 
-/// The difference of two pictures.
 #[derive(Clone, Debug)]
 pub struct PictureDifference {
     /// 1 minus the mean similarity of all windows and colours: from 0 (equal) to 2.

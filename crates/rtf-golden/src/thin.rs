@@ -2,9 +2,8 @@
 
 use crate::Trajectory;
 
-/// The most decimals of a value.
 const MAX_DECIMALS: usize = 12;
-/// The most decimals of a time: a nanosecond.
+/// A nanosecond.
 const MAX_TIME_DECIMALS: usize = 9;
 
 /// Rounded points of a trajectory.

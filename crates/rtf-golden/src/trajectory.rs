@@ -1,21 +1,17 @@
 //! A trajectory: a function of time, linear between its points.
 
-/// A trajectory. Times start at 0 and increase; values are finite.
+/// Times start at 0 and increase; values are finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
     points: Vec<(f64, f64)>,
 }
 
-/// Why points are no trajectory.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum TrajectoryError {
-    /// There is no point.
     #[error("it has no samples")]
     Empty,
-    /// A value or time is not finite.
     #[error("the value at {0} s is not finite")]
     NotFinite(f64),
-    /// A time is not after the one before.
     #[error("the time {0} s is not after the one before")]
     NotIncreasing(f64),
 }
@@ -25,9 +21,7 @@ pub enum TrajectoryError {
 pub struct Deviation {
     /// The time since the start of the trajectory, in seconds.
     pub time: f64,
-    /// The value of the trajectory.
     pub got: f64,
-    /// The value of the reference.
     pub expected: f64,
 }
 
@@ -44,20 +38,16 @@ impl Deviation {
 pub struct Aligned {
     /// The time since the start of the trajectory, in seconds.
     pub time: f64,
-    /// The least value.
     pub low: f64,
-    /// The greatest value.
     pub high: f64,
 }
 
-/// The result of a comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// The root of the mean squared difference.
     pub rms: f64,
     /// The largest difference; the first of several.
     pub worst: Deviation,
-    /// The reference, as it was aligned.
     pub aligned: Vec<Aligned>,
 }
 

@@ -36,7 +36,6 @@ pub(crate) struct Atom {
     is_linear: bool,
     /// The functions up to the progress; `None` before the start of the trace.
     functions: Option<[Function; 2]>,
-    /// How many knots were computed.
     knots: u64,
     /// Reused memory.
     lines: Vec<Line>,
@@ -76,7 +75,6 @@ impl Atom {
         self.comparison.polarity
     }
 
-    /// Whether it has a signal.
     pub(crate) fn has_signal(&self, signal: usize) -> bool {
         self.slots.iter().any(|slot| slot.signal() == signal)
     }

@@ -3,7 +3,6 @@
 use crate::expression::{Expression, Leaf};
 use crate::syntax::{Comparison as Sign, Span};
 
-/// A comparison of signals.
 #[derive(Clone, Debug)]
 pub(crate) struct Comparison {
     /// The difference of the sides: above 0 if `<` or `>` holds.
@@ -14,7 +13,6 @@ pub(crate) struct Comparison {
     pub is_truth: bool,
     /// 1, or -1 if it is negated as a part of the formula.
     pub polarity: f64,
-    /// Its part of the text.
     pub span: Span,
 }
 

@@ -20,7 +20,6 @@ const MARGIN_SECS: f64 = 1e-6;
 /// When a component is judged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Scope {
-    /// At the start of the trace.
     Start,
     /// At all or some times from this one on, in seconds after the start.
     Unbounded(Quantifier, f64),
@@ -108,7 +107,6 @@ impl Component {
         }
     }
 
-    /// Takes a sample.
     pub(crate) fn sample(&mut self, signal: usize, sample: (f64, f64)) {
         if self.result.is_some() {
             return;

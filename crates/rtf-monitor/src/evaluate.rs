@@ -26,7 +26,6 @@ pub(crate) enum Mode {
     Settled { now: f64 },
 }
 
-/// The state of an evaluation.
 pub(crate) struct Evaluation<'a> {
     pub atoms: &'a [Atom],
     pub kind: Kind,
@@ -310,7 +309,6 @@ impl Evaluation<'_> {
     }
 }
 
-/// The infimum or supremum over a window.
 fn extremum(function: Function, quantifier: Quantifier, bounds: Bounds) -> Function {
     match quantifier {
         Quantifier::Some => supremum(&function, bounds),

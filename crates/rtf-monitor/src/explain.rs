@@ -36,7 +36,6 @@ pub(crate) fn component(shape: &Shape, value: &dyn Fn(usize) -> f64) -> usize {
     }
 }
 
-/// The cause of a component's value.
 pub(crate) fn cause(component: &Component, mode: Mode, now: f64) -> Cause {
     let sign = component.polarity();
     let oriented = |kind: Kind| {

@@ -99,7 +99,6 @@ impl Expression {
         }
     }
 
-    /// Whether it has a rate.
     pub(crate) fn has_rate(&self) -> bool {
         match self {
             Self::Constant(_) | Self::Leaf(_) => false,
@@ -130,7 +129,6 @@ impl Expression {
         }
     }
 
-    /// The parts of a stretch of the line.
     fn divide(&self, leaves: &[Line], duration: f64, stretch: Stretch, parts: &mut Vec<Part>) {
         let Stretch { from, to, divisions } = stretch;
         let part: Vec<Line> = leaves

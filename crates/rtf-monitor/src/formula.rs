@@ -6,7 +6,6 @@ use std::time::Duration;
 use crate::syntax::{self, Condition, ParseError};
 use crate::unit::{self, UnitError};
 
-/// A signal in a formula.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SignalReference {
     pub name: String,

@@ -6,9 +6,7 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     Holds,
-    /// It does not hold.
     Violated,
-    /// The samples do not decide it.
     NotEnoughData,
 }
 
@@ -23,7 +21,6 @@ pub struct SignalValue {
     pub value: f64,
 }
 
-/// A violation of a formula.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Violation {
     /// The time of the sample, in seconds, after which the formula could not hold any more.
@@ -43,7 +40,6 @@ pub struct Violation {
 /// The judgement of a whole trace.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// Whether the formula holds.
     pub verdict: Verdict,
     /// How far the signals are from the opposite verdict, in the units of the comparisons: above
     /// 0 if the formula holds, below if it is violated; 0 with either. `None` if it is not

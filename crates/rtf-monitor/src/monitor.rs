@@ -16,7 +16,6 @@ const MAX_EARLY: usize = 65_536;
 /// How many samples may wait for those of a slower signal. Then its value counts as unchanged.
 const MAX_WAITING: usize = 200_000;
 
-/// A formula that cannot be monitored.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MonitorError {
     /// A constant has a unit, and the formula was not converted by [`Formula::check_units`].

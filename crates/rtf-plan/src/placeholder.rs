@@ -1,6 +1,5 @@
 //! Placeholders in the texts of a suite: `${port:name}`, `${param:name}`.
 
-/// A segment of a text.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Segment<'a> {
     /// Literal text.

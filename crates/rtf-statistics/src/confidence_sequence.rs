@@ -17,7 +17,6 @@ const LOG_BETA_HALF: f64 = 1.144_729_885_849_400_2;
 /// Halvings of an interval until its ends are neighbouring numbers.
 const HALVINGS: u32 = 1100;
 
-/// A confidence sequence for a rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConfidenceSequence {
     /// ln(1/α).

@@ -14,7 +14,6 @@ const RESAMPLES: u32 = 9999;
 /// Sums are equal if they differ by less than this part: rounding errors.
 const RESOLUTION: f64 = 1e-13;
 
-/// The result of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PairedComparison {
     /// The number of pairs that differ. The others do not say which version is better.

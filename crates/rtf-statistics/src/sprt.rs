@@ -11,9 +11,7 @@ use crate::is_probability;
 /// The rate that a test accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Accepted {
-    /// The lower rate.
     Low,
-    /// The higher rate.
     High,
 }
 

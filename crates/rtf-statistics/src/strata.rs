@@ -7,13 +7,10 @@ use crate::{Rate, rate};
 /// The results with values in a bin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Stratum {
-    /// The lowest value of the bin.
     pub low: f64,
     /// The highest value: excluded, except in the last bin.
     pub high: f64,
-    /// The number of results.
     pub trials: u64,
-    /// The number of passed results.
     pub successes: u64,
     /// The rate with its Wilson interval; `None` for an empty bin. Each interval has the
     /// confidence for itself; that all hold at once is less certain.

@@ -2,7 +2,6 @@
 
 use rtf_model::Episode;
 
-/// All episodes of a campaign.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EpisodeList {
     /// The episodes, in the order of their ids.

@@ -29,11 +29,8 @@ const MAX_CANDIDATES: u64 = 1000;
 pub struct Resolution<'a> {
     /// The directory of the campaign file, to which CSV files are relative.
     pub dir: &'a Path,
-    /// The campaign file.
     pub source: &'a SourceText,
-    /// The problems found so far.
     pub problems: &'a mut Vec<Diagnostic>,
-    /// The texts to which problems refer.
     pub sources: &'a mut SourceMap,
 }
 

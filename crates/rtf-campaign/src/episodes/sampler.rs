@@ -9,7 +9,6 @@ use crate::file::{Design, Distribution};
 /// The greatest number below 1.
 const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 
-/// Samples one parameter.
 #[derive(Debug)]
 pub(super) struct Sampler<'a> {
     distribution: &'a Distribution,

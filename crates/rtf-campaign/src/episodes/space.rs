@@ -25,7 +25,6 @@ pub(super) struct Space<'a> {
 enum Dimension<'a> {
     /// The rows of values of a grid or a file.
     Table(MatrixTable),
-    /// A sampled parameter.
     Sampler(Box<Sampler<'a>>),
 }
 
@@ -77,7 +76,6 @@ impl<'a> Space<'a> {
         (resolution.problems.len() == before).then_some(Self { dimensions, names, combinations })
     }
 
-    /// Returns the names of all parameters.
     pub fn names(&self) -> &[String] {
         &self.names
     }

@@ -13,45 +13,29 @@ mod parser;
 pub struct Constraint {
     /// The position of the value.
     pub span: Span,
-    /// The left side.
     pub left: Expression,
-    /// How the sides compare.
     pub comparison: Comparison,
-    /// The right side.
     pub right: Expression,
 }
 
-/// A comparison of two numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Comparison {
-    /// `<`
     Less,
-    /// `<=`
     LessOrEqual,
-    /// `>`
     Greater,
-    /// `>=`
     GreaterOrEqual,
-    /// `==`
     Equal,
-    /// `!=`
     Different,
 }
 
-/// An arithmetic operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operation {
-    /// `+`
     Add,
-    /// `-`
     Subtract,
-    /// `*`
     Multiply,
-    /// `/`
     Divide,
 }
 
-/// An arithmetic expression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expression {
     Number(f64),

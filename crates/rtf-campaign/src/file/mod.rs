@@ -25,7 +25,7 @@ pub use stop::StoppingRule;
 pub struct Campaign {
     /// The position of the `<campaign>` tag.
     pub span: Span,
-    /// The name; `None` for that of the file.
+    /// `None` for the name of the file.
     pub name: Option<Spanned<String>>,
     /// The suite file, relative to the campaign file.
     pub suite: Spanned<String>,
@@ -41,7 +41,6 @@ pub struct Campaign {
     pub budget: Option<Duration>,
     /// The parameters, in order.
     pub parameters: Vec<DeclaredParameter>,
-    /// The conditions that all episodes meet.
     pub constraints: Vec<Constraint>,
     pub claim: Claim,
     pub stop: StoppingRule,

@@ -7,7 +7,6 @@ use rtf_plan::suite::{ElementReader, Span, Spanned, matrix};
 
 use super::{real, schema};
 
-/// A parameter of a campaign.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DeclaredParameter {
     /// All combinations with the other grids and files.
@@ -22,9 +21,7 @@ pub enum DeclaredParameter {
     /// A value for each episode.
     Sampled {
         name: Spanned<String>,
-        /// How the values of the episodes depend on each other.
         design: Design,
-        /// The distribution of each value.
         distribution: Distribution,
         /// The nominal value; `None` for the middle of the distribution, or its first word.
         nominal: Option<String>,
@@ -34,15 +31,12 @@ pub enum DeclaredParameter {
 /// How the values of the episodes depend on each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Design {
-    /// They are independent.
     Independent,
     /// One in each of as many equal parts as there are episodes.
     LatinHypercube,
-    /// A Sobol sequence.
     Sobol,
 }
 
-/// The distribution of a value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Distribution {
     /// One of these words, each with the same probability.
@@ -54,7 +48,6 @@ pub enum Distribution {
         /// The highest value.
         high: f64,
     },
-    /// A normally distributed number.
     Normal {
         mean: f64,
         /// The standard deviation.

@@ -39,7 +39,6 @@ pub(crate) struct Function {
 }
 
 impl Function {
-    /// A constant on an interval.
     pub(crate) fn constant(from: f64, to: f64, value: f64) -> Self {
         let mut function = Self::starting(Knot::flat(from, value));
         if from < to {
@@ -116,7 +115,6 @@ impl Function {
         interpolate((start.time, start.right), (end.time, end.left), time)
     }
 
-    /// The negative.
     pub(crate) fn negated(mut self) -> Self {
         for knot in &mut self.knots {
             (knot.left, knot.at, knot.right) = (-knot.left, -knot.at, -knot.right);

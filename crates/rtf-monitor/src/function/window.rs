@@ -201,7 +201,6 @@ impl Sweep<'_> {
         (self.left > 0 && self.left < self.knots.len()).then(|| self.left - 1)
     }
 
-    /// The line at the end of the window.
     fn end_line(&self) -> Option<usize> {
         (self.entered > 0 && self.entered < self.knots.len()).then(|| self.entered - 1)
     }

@@ -4,19 +4,17 @@ use super::ParseError;
 use super::tree::Span;
 use crate::unit;
 
-/// A token and its part of the text.
 #[derive(Clone, Debug)]
 pub(super) struct Token {
     pub kind: TokenKind,
     pub span: Span,
 }
 
-/// What a token is.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum TokenKind {
     /// A finite number, and the unit that follows it without a space.
     Number(f64, Option<String>),
-    /// A word: a keyword or the name of a signal.
+    /// A keyword or the name of a signal.
     Word(String),
     /// The name of a signal in quotes.
     Quoted(String),
@@ -40,7 +38,6 @@ const FOREIGN: [(&str, &str); 8] = [
     ("~", "write `not`"),
 ];
 
-/// Splits a text into tokens.
 pub(super) fn tokens(text: &str) -> Result<Vec<Token>, ParseError> {
     let mut tokens = Vec::new();
     let mut at = 0;
@@ -89,7 +86,6 @@ fn name_length(text: &str) -> usize {
     end
 }
 
-/// A number with its unit.
 fn number(text: &str, at: usize) -> Result<(TokenKind, usize), ParseError> {
     let length = digits_length(text);
     let value = text[..length].parse::<f64>().ok().filter(|value| value.is_finite());

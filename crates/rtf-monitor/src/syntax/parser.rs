@@ -45,7 +45,6 @@ impl Parsed {
     }
 }
 
-/// The state of the parser.
 pub(super) struct Parser {
     tokens: Vec<Token>,
     at: usize,

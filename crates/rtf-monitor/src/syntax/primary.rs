@@ -67,7 +67,6 @@ impl Parser {
         Parsed::Number(Number::Signal { index, span })
     }
 
-    /// Takes a closing bracket.
     fn close(&mut self, bracket: &str, opening: &Token) -> Result<(), ParseError> {
         if self.take(bracket) {
             return Ok(());

@@ -17,7 +17,6 @@ impl Interval {
     pub(crate) const UNBOUNDED: Self = Self { from: 0.0, to: f64::INFINITY };
 }
 
-/// How two numbers compare.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Comparison {
     Less,
@@ -28,7 +27,6 @@ pub(crate) enum Comparison {
     Different,
 }
 
-/// An operation with two operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Arithmetic {
     Add,
@@ -75,11 +73,11 @@ pub(crate) enum Number {
     Absolute { inner: Box<Number>, span: Span },
     /// The least or greatest of at least two expressions.
     Extreme { which: Extreme, parts: Vec<Number>, span: Span },
+    /// `+`, `-`, `*` or `/`.
     Operation { operation: Arithmetic, sides: Box<[Number; 2]>, span: Span },
 }
 
 impl Number {
-    /// Its part of the text.
     pub(crate) fn span(&self) -> Span {
         match self {
             Self::Literal { span, .. }
@@ -116,6 +114,7 @@ impl Number {
 pub(crate) enum Condition {
     /// `true` or `false`.
     Constant(bool, Span),
+    /// A comparison of two numbers.
     Comparison { comparison: Comparison, sides: Box<[Number; 2]>, span: Span },
     /// A signal as a condition: its last sample is above 0.5.
     Truth { index: usize, span: Span },
@@ -138,7 +137,6 @@ pub(crate) enum Condition {
 }
 
 impl Condition {
-    /// Its part of the text.
     pub(crate) fn span(&self) -> Span {
         match self {
             Self::Constant(_, span)

@@ -10,7 +10,7 @@ enum Quantity {
     Constant,
     /// The unit of one of its signals is not known.
     Unknown,
-    /// A unit; that of a pure number is empty.
+    /// That of a pure number is empty.
     Known(Unit),
 }
 
@@ -201,7 +201,6 @@ fn product(left: &Quantity, right: &Quantity, exponent: i32) -> Quantity {
     }
 }
 
-/// Multiplies an expression with a factor.
 #[expect(clippy::float_cmp, reason = "a factor of exactly 1 changes nothing")]
 fn scale(number: &mut Number, factor: f64) {
     if factor == 1.0 {

@@ -14,9 +14,7 @@ pub(crate) use convert::convert;
 pub struct UnitError {
     /// The part of the text, in bytes.
     pub range: Range<usize>,
-    /// What is wrong.
     pub message: String,
-    /// How to correct it, if that is known.
     pub hint: Option<String>,
 }
 

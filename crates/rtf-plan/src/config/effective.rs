@@ -10,12 +10,11 @@ use super::toml_reader::Entry;
 use crate::plan::defaults;
 use crate::suite::{SharedSettings, SourceText};
 
-/// An effective setting.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Setting {
     /// Its full key.
     pub key: String,
-    /// Its value; several only for `reports`.
+    /// Several only for `reports`.
     pub values: Vec<String>,
     /// The origin of the value: `rtf.toml:12`.
     pub origin: String,
@@ -29,9 +28,7 @@ pub struct SettingsQuery<'a> {
     /// The nearest `rtf.toml`.
     pub view: Option<ProfileView>,
     pub suite: Option<(&'a SourceText, &'a SharedSettings)>,
-    /// The settings of the run.
     pub run: &'a [RunValue],
-    /// The command line.
     pub request: &'a ConfigRequest,
     /// The user's environment variables.
     pub user: &'a HashMap<String, String>,

@@ -30,7 +30,6 @@ pub struct ConfigFile {
 pub struct ConfigFiles {
     /// The files by directory; `None` for a directory without one.
     by_dir: HashMap<PathBuf, Option<Rc<ConfigFile>>>,
-    /// The problems of the files that were read.
     pub problems: Vec<Diagnostic>,
     /// The directory to which the paths in messages are relative.
     current_dir: PathBuf,
@@ -38,7 +37,7 @@ pub struct ConfigFiles {
 }
 
 impl ConfigFiles {
-    /// Creates an empty set. Messages name files relative to `current_dir`.
+    /// Messages name files relative to `current_dir`.
     #[must_use]
     pub fn new(current_dir: &Path) -> Self {
         Self { current_dir: current_dir.to_owned(), ..Self::default() }
@@ -83,7 +82,6 @@ impl ConfigFiles {
         all
     }
 
-    /// Returns the texts of all files found so far.
     #[must_use]
     pub fn sources(&self) -> SourceMap {
         let mut sources = SourceMap::default();

@@ -14,7 +14,6 @@ pub(super) enum ValueFormat {
     Scale,
     /// A whole number from the first to the second bound, inclusive.
     Count(u32, u32),
-    /// `true` or `false`.
     Boolean,
     /// One of these words.
     Words(&'static [&'static str]),
@@ -37,7 +36,6 @@ const fn key(name: &'static str, format: ValueFormat, summary: &'static str) -> 
     Key { name, format, summary }
 }
 
-/// The kind of names in a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NameKind {
     /// Environment variables.

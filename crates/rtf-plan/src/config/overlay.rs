@@ -86,7 +86,6 @@ fn overlay_limits(suite: &mut DeclaredSuite, view: &ProfileView) {
 #[derive(Debug)]
 pub(crate) struct DirectPluginConfig {
     pub environment: String,
-    /// The environment variables.
     pub env: Vec<(String, String)>,
     pub limits: DeclaredLimits,
 }
@@ -279,7 +278,6 @@ impl ParamSubstitution<'_> {
         self.text(&mut plugin.param, plugin.name.span);
     }
 
-    /// The source of signals.
     fn source(&mut self, source: &mut DeclaredSourceKind) {
         match source {
             DeclaredSourceKind::Program { command, .. } => {

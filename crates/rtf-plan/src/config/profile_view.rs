@@ -14,7 +14,6 @@ use crate::suite::parse_duration;
 /// The profile and parameters that the user selects on the command line or by variables.
 #[derive(Clone, Debug, Default)]
 pub struct ConfigRequest {
-    /// The name of the profile.
     pub profile: Option<String>,
     /// Parameters: name and value.
     pub params: Vec<(String, String)>,
@@ -97,13 +96,11 @@ impl ProfileView {
         profile.chain(&self.file.defaults.quarantines)
     }
 
-    /// Returns the text of a value.
     #[must_use]
     pub fn text(&self, key: &str) -> Option<&str> {
         self.get(key).and_then(Entry::text)
     }
 
-    /// Returns a value as a duration.
     #[must_use]
     pub fn duration(&self, key: &str) -> Option<Duration> {
         self.text(key).and_then(|text| parse_duration(text).ok())

@@ -8,19 +8,15 @@ use crate::select::{self, Filter};
 use crate::suite::{DeclaredKnownFailure, SourceText, Span, Spanned, parse_day, parse_verdict};
 use crate::wording::{nearest, quoted};
 
-/// The key of the tables.
 pub(super) const QUARANTINE: &str = "quarantine";
 
 pub(super) const KEYS: [&str; 5] = ["filter", "issue", "reason", "until", "verdicts"];
 
-/// A table.
 #[derive(Clone, Debug)]
 pub struct Quarantine {
     /// The position of the filter.
     pub span: Span,
-    /// The tests that it applies to.
     pub filter: Filter,
-    /// Their known failure.
     pub failure: DeclaredKnownFailure,
 }
 

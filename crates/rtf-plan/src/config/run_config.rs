@@ -24,12 +24,9 @@ pub fn input_dir(path: &Path) -> PathBuf {
     Path::new(file).parent().unwrap_or(path).to_owned()
 }
 
-/// A value that applies to the run.
 #[derive(Clone, Debug)]
 pub struct RunValue {
-    /// The file that contains it.
     pub file: Rc<ConfigFile>,
-    /// The entry in the file.
     pub entry: Entry,
 }
 
@@ -84,7 +81,6 @@ impl RunConfig {
         }
     }
 
-    /// Returns the value of a key.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&RunValue> {
         self.values.iter().find(|value| value.entry.key == key)

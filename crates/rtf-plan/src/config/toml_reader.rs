@@ -24,13 +24,11 @@ pub struct Entry {
 /// The values of a file or of one of its profiles.
 #[derive(Clone, Debug, Default)]
 pub struct Layer {
-    /// The settings.
     pub entries: Vec<Entry>,
     pub quarantines: Vec<Quarantine>,
 }
 
 impl Layer {
-    /// Returns the value of a key.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.key == key)
@@ -44,7 +42,6 @@ pub struct ParsedConfig {
     pub profile: Option<Spanned<String>>,
     /// The values outside of profiles.
     pub defaults: Layer,
-    /// The profiles, by name.
     pub profiles: Vec<(Spanned<String>, Layer)>,
 }
 

@@ -5,16 +5,12 @@ use toml::de::DeValue;
 
 use crate::suite::{SourceText, Span};
 
-/// A key and its position.
 pub(super) type TomlKey<'a> = toml::Spanned<toml::de::DeString<'a>>;
-/// A value and its position.
 pub(super) type TomlValue<'a> = toml::Spanned<DeValue<'a>>;
 
 /// Reads the values of a file.
 pub(super) struct TomlReader<'a> {
-    /// The text of the file.
     pub source: &'a SourceText,
-    /// The problems found so far.
     pub problems: &'a mut Vec<Diagnostic>,
 }
 
@@ -26,12 +22,10 @@ impl TomlReader<'_> {
     }
 }
 
-/// Returns the position of a key or a value.
 pub(super) fn span<T>(value: &toml::Spanned<T>) -> Span {
     Span::new(value.span())
 }
 
-/// Checks whether a value is a text.
 pub(super) fn is_text(value: &TomlValue<'_>) -> bool {
     matches!(value.get_ref(), DeValue::String(_))
 }

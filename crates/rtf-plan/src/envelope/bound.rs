@@ -5,7 +5,6 @@ use crate::suite::Span;
 /// A side of a limit.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Bound {
-    /// The number.
     pub value: f64,
     /// The unit; empty for that of the signal.
     pub unit: String,
@@ -50,14 +49,11 @@ impl Bound {
 /// The sides of a limit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Bounds {
-    /// The least value.
     pub min: Option<Bound>,
-    /// The greatest value.
     pub max: Option<Bound>,
 }
 
 impl Bounds {
-    /// Makes the limits narrower by a factor.
     pub fn tightened(&self, factor: f64) -> Self {
         if factor >= 1.0 {
             return self.clone();

@@ -29,7 +29,6 @@ pub(super) struct Template {
     pub text: Spanned<String>,
 }
 
-/// A joint, and its limits.
 #[derive(Clone, Debug)]
 pub(super) struct DeclaredJoint {
     pub name: Spanned<String>,
@@ -39,15 +38,12 @@ pub(super) struct DeclaredJoint {
 /// A file of limits, or the part for a profile.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LimitsFile {
-    /// The name of the robot.
     pub robot: Option<Spanned<String>>,
     /// The file of the model.
     pub model: Option<Spanned<String>>,
-    /// What violations mean.
     pub severity: Option<FindingSeverity>,
     /// What tightens limits.
     pub factor: Option<f64>,
-    /// The names of the signals of joints.
     pub templates: Vec<Template>,
     /// Joints without limits.
     pub ignore: Vec<Spanned<String>>,

@@ -26,12 +26,10 @@ pub(super) fn range(low: f64, high: f64, unit: &str) -> Bounds {
     Bounds { min: Some(Bound::of_model(low, unit)), max: Some(Bound::of_model(high, unit)) }
 }
 
-/// A limit of a magnitude.
 pub(super) fn magnitude(most: f64, unit: &str) -> Bounds {
     Bounds { min: None, max: Some(Bound::of_model(most, unit)) }
 }
 
-/// Reports a problem of an element.
 pub(super) fn report(
     reader: &mut ElementReader<'_>,
     node: Node<'_, '_>,

@@ -57,7 +57,6 @@ pub(super) enum Input {
 }
 
 impl Input {
-    /// The name of the signal.
     pub fn signal(&self) -> &Spanned<String> {
         match self {
             Self::Signal(name) | Self::RateOf(name) => name,
@@ -65,17 +64,13 @@ impl Input {
     }
 }
 
-/// A limit, as the file has it.
 #[derive(Clone, Debug)]
 pub(super) struct DeclaredLimit {
     /// The position of its key.
     pub span: Span,
-    /// What is limited.
     pub input: Option<Input>,
-    /// The sides.
     pub bounds: Bounds,
     /// For how long it may be exceeded.
     pub tolerated: Option<Duration>,
-    /// What a violation means.
     pub severity: Option<FindingSeverity>,
 }

@@ -31,7 +31,6 @@ pub(crate) struct EnvelopeMonitor {
     /// The name, with that of the robot.
     pub name: String,
     pub formula: String,
-    /// What a violation means.
     pub severity: FindingSeverity,
     /// The file and line of the limit.
     pub location: Location,
@@ -51,18 +50,15 @@ pub(crate) struct EnvelopeRequest<'a> {
     pub profile: Option<&'a str>,
     /// The profiles of the suite's `rtf.toml`.
     pub known_profiles: &'a [String],
-    /// The signals of the suite.
     pub signals: &'a [&'a DeclaredSignal],
 }
 
-/// The monitors of a file, and its problems.
 #[derive(Debug, Default)]
 pub(crate) struct CompiledEnvelope {
     /// The monitors; those of a file with errors are incomplete.
     pub monitors: Vec<EnvelopeMonitor>,
     /// The problems; without a label if the file itself cannot be read.
     pub problems: Vec<Diagnostic>,
-    /// The texts to which the problems refer.
     pub sources: Vec<Arc<SourceText>>,
 }
 
@@ -79,7 +75,6 @@ pub fn check_text(source: &SourceText, problems: &mut Vec<Diagnostic>) {
 }
 
 impl EnvelopeRequest<'_> {
-    /// Reads and compiles the file.
     pub fn compile(&self) -> CompiledEnvelope {
         let mut compiled = CompiledEnvelope::default();
         let Some(source) = read(self.dir, self.shown_dir, self.file, &mut compiled) else {

@@ -4,7 +4,6 @@ use super::joint::{ModelJoint, report};
 use super::{CompiledEnvelope, EnvelopeRequest, mjcf, read, urdf};
 use crate::suite::{SourceText, Spanned, read_document};
 
-/// The joints of a model.
 #[derive(Clone, Debug)]
 pub(super) struct Model {
     /// The file in messages.

@@ -5,7 +5,6 @@ use rtf_model::Diagnostic;
 use super::yaml::{Node, Value};
 use crate::suite::{SourceText, Spanned};
 
-/// The key of the profiles.
 pub(super) const PROFILES: &str = "profiles";
 
 /// Removes the profiles from a file, and returns them.

@@ -8,23 +8,18 @@ use crate::suite::{SourceText, Span, Spanned};
 /// The deepest nesting; a file of limits needs five levels.
 const MAX_DEPTH: usize = 16;
 
-/// A value.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
-    /// Its position.
     pub span: Span,
-    /// What it is.
     pub value: Value,
 }
 
-/// The kinds of values.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     /// Nothing, `~` or `null`.
     Null,
     /// A text; numbers are not distinguished.
     Text(String),
-    /// A sequence.
     List(Vec<Node>),
     /// A mapping, in order.
     Map(Vec<(Spanned<String>, Node)>),

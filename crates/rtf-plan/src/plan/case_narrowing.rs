@@ -8,7 +8,6 @@ use rtf_model::protocol::CaseSelector;
 
 use super::{CaseSelection, CaseSelectionOrigin, ListedCase, TestPlan};
 
-/// The result of restricting a selection.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct NarrowedCases {
     /// The paths of the selected cases, without duplicates.

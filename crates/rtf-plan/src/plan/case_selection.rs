@@ -7,12 +7,10 @@ use rtf_model::protocol::CaseSelector;
 pub struct CaseSelection {
     /// The selectors, of which a case must match one; empty for all cases.
     pub selectors: Vec<CaseSelector>,
-    /// The origin of the selectors.
     pub origin: CaseSelectionOrigin,
 }
 
 impl CaseSelection {
-    /// Returns the selection of the cases of these names.
     pub(super) fn of_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Self {
         let equals = |name: &str| CaseSelector::Equals(name.to_owned());
         let selectors = names.into_iter().map(equals).collect();
@@ -31,7 +29,6 @@ impl CaseSelection {
         self.paths().filter(move |_| is_required)
     }
 
-    /// Returns the paths that it contains.
     pub fn paths(&self) -> impl Iterator<Item = &str> {
         self.selectors.iter().filter_map(|selector| match selector {
             CaseSelector::Equals(path) => Some(path.as_str()),

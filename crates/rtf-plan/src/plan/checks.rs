@@ -33,7 +33,6 @@ pub(super) struct PluginUse<'a> {
     pub optional: bool,
     /// The arguments with which its cases are listed; empty for other plug-ins.
     pub arguments: &'a [String],
-    /// The framework of the test.
     pub framework: Option<(&'static str, Framework)>,
 }
 
@@ -85,7 +84,6 @@ impl CheckGroup {
 /// A host's answer about one file.
 #[derive(Clone, Debug)]
 pub enum CheckAnswer {
-    /// The host's report.
     Report(CheckReport),
     /// The host died while it loaded this file.
     Died {
@@ -143,7 +141,6 @@ pub(super) struct CheckFindings {
 }
 
 impl PluginChecks {
-    /// Records a use.
     pub fn add(&mut self, plugin: PluginUse<'_>) -> CheckId {
         let id = self.group(&plugin);
         let group = &mut self.groups[id];
@@ -201,7 +198,6 @@ impl PluginChecks {
         }
     }
 
-    /// Returns the groups to check.
     pub fn groups(&self) -> &[CheckGroup] {
         &self.groups
     }

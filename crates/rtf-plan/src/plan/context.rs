@@ -13,23 +13,17 @@ use crate::suite::{DeclaredSuite, SourceText};
 
 /// The state shared by the planners of all suites.
 pub(super) struct PlanContext<'a> {
-    /// The user's options.
     pub options: &'a Options,
-    /// The problems found so far.
     pub problems: Vec<Diagnostic>,
-    /// The plug-ins to check.
     pub checks: PluginChecks,
     /// The texts of further files to which problems refer.
     pub sources: Vec<Arc<SourceText>>,
-    /// The `rtf.toml` files.
     pub files: ConfigFiles,
-    /// The quarantines of those files.
     pub quarantines: Quarantines,
     hosts: Vec<Arc<HostPlan>>,
 }
 
 impl<'a> PlanContext<'a> {
-    /// Creates a context without problems.
     pub fn new(options: &'a Options) -> Self {
         let files = match options.compatibility {
             Compatibility::Native => ConfigFiles::new(&options.runner.current_dir),
@@ -55,7 +49,6 @@ impl<'a> PlanContext<'a> {
         self.problems.append(&mut problems);
     }
 
-    /// Returns the settings of plug-ins that are given directly.
     pub fn direct_plugin_config(
         &mut self,
         dir: &Path,

@@ -8,7 +8,6 @@ use rtf_model::Diagnostic;
 use crate::suite::{DeclaredFixture, SourceText, Span, Spanned};
 use crate::wording::suggest;
 
-/// One step of the set-up.
 pub(super) struct SetupStep {
     /// The index of the fixture in the file.
     pub fixture: usize,
@@ -16,7 +15,6 @@ pub(super) struct SetupStep {
     pub depends: Vec<usize>,
 }
 
-/// A dependency on another fixture.
 #[derive(Clone, Copy, Debug)]
 struct Dependency {
     /// The index of the other fixture in the file.
@@ -26,7 +24,6 @@ struct Dependency {
     explicit: bool,
 }
 
-/// The dependencies of each fixture.
 struct DependencyGraph<'a> {
     names: &'a [String],
     dependencies: Vec<Vec<Dependency>>,

@@ -19,7 +19,6 @@ use super::{Compatibility, InputPath, Options, Plan, SuitePlan};
 use crate::config;
 use crate::suite::{self, SourceMap, SourceText};
 
-/// The result of planning.
 #[derive(Debug)]
 pub struct PlanOutcome {
     /// The plan; `None` if there is an error among the diagnostics.
@@ -27,7 +26,6 @@ pub struct PlanOutcome {
     /// All errors, then all warnings. Each in the order of the files, from top to
     /// bottom, and then those without a position.
     pub diagnostics: Vec<Diagnostic>,
-    /// The texts to which the diagnostics refer.
     pub sources: SourceMap,
 }
 
@@ -41,7 +39,6 @@ pub struct PlanDraft {
 }
 
 impl PlanDraft {
-    /// Returns the plug-ins to check.
     #[must_use]
     pub fn check_groups(&self) -> &[CheckGroup] {
         self.checks.groups()

@@ -17,7 +17,6 @@ use crate::suite::{DeclaredEffect, DeclaredFault, DeclaredTarget, SourceText};
 /// The name of the fixture: tests find its value `socket`.
 const NAME: &str = "faults";
 
-/// The declared faults of a suite.
 pub(super) struct DeclaredFaults {
     /// The faults of all tests.
     pub of_suite: Vec<DeclaredFault>,
@@ -25,7 +24,6 @@ pub(super) struct DeclaredFaults {
     pub of_tests: OfTests<DeclaredFault>,
     /// The names that the suite gives to its fixtures.
     pub fixtures: Vec<String>,
-    /// Whether the suite has a simulated clock.
     pub has_clock: bool,
     /// Whether the suite has a private network.
     pub has_network: bool,

@@ -11,7 +11,6 @@ use crate::wording::suggest;
 /// The fixtures of a suite, in the order of the file.
 pub(super) struct DeclaredValues<'a> {
     pub fixtures: &'a [DeclaredFixture],
-    /// Their names.
     pub names: &'a [String],
     /// The order of their set-up.
     pub steps: &'a [SetupStep],

@@ -8,14 +8,12 @@ use super::unix::is_executable;
 /// The properties of a type whose tests another framework runs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Framework {
-    /// The kind of file that a test names.
     pub subject: TestSubject,
     /// Whether its cases can be listed before the run.
     pub lists_cases: bool,
     /// Whether `rtf run` lists them although no case is selected: the list checks the program,
     /// or compiles it.
     pub lists_before_run: bool,
-    /// Which of its cases `case-timeout` limits.
     pub limits: CaseLimits,
     /// Which processes of its programs can be forked (`spec/frameworks.md`).
     pub forks: Forks,
@@ -36,7 +34,6 @@ pub(super) enum CaseLimits {
 /// Which processes of the programs of a framework can be forked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Forks {
-    /// None.
     Never,
     /// Those of tests whose cases have a process each.
     IfSeparate,
@@ -64,7 +61,6 @@ impl TestSubject {
         }
     }
 
-    /// Checks whether a path is of this kind.
     pub fn accepts(self, path: &Path) -> bool {
         match self {
             Self::Program => is_executable(path),

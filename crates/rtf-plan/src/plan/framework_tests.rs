@@ -23,16 +23,13 @@ use crate::wording::quoted;
 /// The hint for a limit of cases that has no effect.
 const TEST_LIMIT: &str = "`timeout` limits the whole test";
 
-/// A test of another framework.
 #[derive(Debug)]
 pub(super) struct FrameworkTest {
-    /// Its type.
     kind: &'static HostKind,
     /// The position of its file in the suite.
     site: UseSite,
     /// The variables of the test, without those of a matrix.
     env: Vec<(String, String)>,
-    /// The patterns that select its cases.
     patterns: Option<Spanned<String>>,
     separate: bool,
     fork_at_main: bool,

@@ -26,11 +26,9 @@ pub(super) struct HostKind {
     pub class_prefix: Option<&'static str>,
     /// For a type whose tests another framework runs.
     pub framework: Option<Framework>,
-    /// How to start its host.
     pub start: HostStart,
 }
 
-/// The ways to start a host.
 #[derive(Debug)]
 pub(super) enum HostStart {
     /// A program that comes with `rtf`.
@@ -56,7 +54,6 @@ pub(super) enum HostStart {
 }
 
 impl HostKind {
-    /// The SDK that its tests can import.
     pub fn sdk(&self) -> Option<&'static Sdk> {
         match &self.start {
             HostStart::Shipped { sdk, .. } => *sdk,

@@ -16,7 +16,6 @@ pub(super) struct InputFile {
 #[derive(Debug)]
 pub(super) struct DirectPlugin {
     pub file: InputFile,
-    /// The type.
     pub kind: &'static HostKind,
     /// Whether it is a file of an input directory. If it contains no test, it is omitted.
     pub from_dir: bool,

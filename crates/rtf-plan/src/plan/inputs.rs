@@ -16,13 +16,11 @@ use crate::wording::quoted;
 /// A suite file or a plug-in to run.
 #[derive(Debug)]
 pub(super) enum ResolvedInput {
-    /// A suite file.
     Suite {
         file: InputFile,
         /// The names of the selected tests; empty for all.
         only: Vec<String>,
     },
-    /// A plug-in.
     Plugin(DirectPlugin),
 }
 

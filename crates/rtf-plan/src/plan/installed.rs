@@ -42,7 +42,6 @@ pub fn ament_dir(runner: &RunnerEnvironment) -> Option<PathBuf> {
     runner.shipped(&["share/rtf/ament"], "packaging/ament", "ament_cmake_rtf/package.xml")
 }
 
-/// Finds a program in the user's `PATH`.
 #[must_use]
 pub fn find_in_path(name: &str, runner: &RunnerEnvironment) -> Option<PathBuf> {
     program::in_path(name, &SearchScope::of_runner(runner))

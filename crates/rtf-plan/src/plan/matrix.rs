@@ -23,18 +23,14 @@ const MAX_PRODUCT: usize = 1_000_000;
 pub(super) struct MatrixExpander<'a> {
     /// The directory to which `values-from` is relative.
     pub dir: &'a Path,
-    /// The suite file.
     pub source: &'a SourceText,
-    /// The problems found so far.
     pub problems: &'a mut Vec<Diagnostic>,
-    /// The texts to which problems refer.
     pub sources: &'a mut SourceMap,
     /// The CSV files read so far; `None` for an invalid one, which was reported.
     tables: HashMap<String, Option<Rc<MatrixTable>>>,
 }
 
 impl<'a> MatrixExpander<'a> {
-    /// Creates an expander for a suite in `dir`.
     pub fn new(
         dir: &'a Path,
         source: &'a SourceText,

@@ -19,10 +19,9 @@ pub struct MatrixTable {
     pub rows: Vec<Vec<String>>,
 }
 
-/// The result of reading a file.
 #[derive(Debug, Default)]
 pub struct ReadTable {
-    /// The table; `None` if there are problems.
+    /// `None` if there are problems.
     pub table: Option<MatrixTable>,
     /// The problems; without a label if the file cannot be read.
     pub problems: Vec<Diagnostic>,

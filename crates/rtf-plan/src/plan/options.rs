@@ -16,7 +16,6 @@ pub enum InputPath {
     Plugin(PathBuf),
     /// The plug-ins of a directory.
     Plugins(PathBuf),
-    /// A suite file.
     Suite(PathBuf),
     /// The suites of a directory.
     Suites(PathBuf),
@@ -53,7 +52,6 @@ pub enum Compatibility {
 /// The tests of other frameworks whose cases are listed before the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CaseListing {
-    /// All of them.
     #[default]
     All,
     /// Those from whose cases some are selected, and those whose list also checks a program
@@ -61,7 +59,6 @@ pub enum CaseListing {
     IfNeeded,
 }
 
-/// The options of planning.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Whether subdirectories of input directories are searched.
@@ -72,12 +69,9 @@ pub struct Options {
     pub environment: String,
     /// The number of repetitions of plug-ins that are given directly; 0 means 1.
     pub repetitions: u32,
-    /// The rules for names and options.
     pub compatibility: Compatibility,
     pub runner: RunnerEnvironment,
-    /// The profile and the parameters.
     pub config_request: ConfigRequest,
-    /// The tests whose cases are listed.
     pub case_listing: CaseListing,
     /// The local day on which the run starts, which known failures are compared with.
     pub today: Date,

@@ -8,7 +8,6 @@ use crate::wording::suggest;
 
 #[derive(Clone, Copy)]
 pub(super) struct SuiteFixtures<'f> {
-    /// Those that were planned.
     pub planned: &'f [FixturePlan],
     /// The names of those that were declared.
     pub declared: &'f [String],

@@ -21,9 +21,7 @@ use crate::suite::{DeclaredPlugin, SourceText, split_param};
 
 /// Plans the plug-ins of one suite.
 pub(super) struct PluginPlanner<'a, 'c> {
-    /// The state shared by all suites.
     pub context: &'c mut PlanContext<'a>,
-    /// The suite's scope.
     scope: SearchScope<'c>,
     finder: PluginFinder,
     hosts: HashMap<&'static str, Option<Arc<HostPlan>>>,
@@ -37,7 +35,6 @@ pub(super) struct PluginPlanner<'a, 'c> {
 const MAX_SUGGESTIONS: usize = 20;
 
 impl<'a, 'c> PluginPlanner<'a, 'c> {
-    /// Creates a planner for plug-ins in `scope`.
     pub fn new(context: &'c mut PlanContext<'a>, scope: SearchScope<'c>) -> Self {
         Self {
             context,
@@ -50,7 +47,6 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
         }
     }
 
-    /// Returns the suite's scope.
     pub fn scope(&self) -> SearchScope<'c> {
         self.scope
     }
@@ -211,14 +207,12 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
         self.missing[index].1.add(site);
     }
 
-    /// Reports the missing plug-ins.
     pub fn report_missing(self) {
         let problems = self.missing.into_iter().map(|(problem, sites)| sites.label(problem, ""));
         self.context.problems.extend(problems);
     }
 }
 
-/// The way in which a suite uses a plug-in.
 struct PluginUsage<'a> {
     kind: &'static HostKind,
     role: PluginRole,

@@ -67,12 +67,10 @@ pub(super) struct PluginFinder {
 }
 
 impl PluginFinder {
-    /// Creates a finder with an empty cache.
     pub fn new() -> Self {
         Self { dirs: HashMap::new(), found: HashMap::new() }
     }
 
-    /// Returns the plug-in's file.
     pub fn find(
         &mut self,
         name: &str,

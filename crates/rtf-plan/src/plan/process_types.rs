@@ -20,7 +20,6 @@ pub struct ProcessPlan {
     pub remote: Option<RemotePlan>,
 }
 
-/// A remote machine.
 #[derive(Clone, Debug)]
 pub struct RemotePlan {
     /// The machine, as declared in the suite.
@@ -29,32 +28,26 @@ pub struct RemotePlan {
     pub ssh: Vec<String>,
 }
 
-/// The probes of a process fixture.
 #[derive(Clone, Debug, Default)]
 pub struct ProbePlans {
     /// The probes that must pass before it is ready.
     pub ready: Vec<Probe>,
     /// The probes that must pass while it is ready.
     pub alive: Vec<Probe>,
-    /// The sources of its values.
     pub values: Vec<ValueProbe>,
 }
 
 /// The source of a value of a process.
 #[derive(Clone, Debug)]
 pub struct ValueProbe {
-    /// The name of the value.
     pub name: String,
     /// A log, whose pattern has a group for the value; a file or a command.
     pub probe: Probe,
 }
 
-/// A probe of a process fixture.
 #[derive(Clone, Debug)]
 pub struct Probe {
-    /// The kind, with its value.
     pub kind: ProbeKind,
-    /// The interval.
     pub every: Duration,
     /// The limit for one answer.
     pub timeout: Duration,

@@ -15,7 +15,6 @@ use crate::select::FilterMatch;
 use crate::select::filter::Candidate;
 use crate::suite::Span;
 
-/// The quarantines of a run.
 #[derive(Debug, Default)]
 pub(super) struct Quarantines {
     /// The tables that can match a test of a planned suite, by file and position.

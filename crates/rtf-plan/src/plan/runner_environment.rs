@@ -11,7 +11,6 @@ pub struct RunnerEnvironment {
     pub current_dir: PathBuf,
     /// The absolute path of the running `rtf`; hosts and SDKs are found from there.
     pub executable: PathBuf,
-    /// The environment variables.
     pub variables: HashMap<String, String>,
 }
 
@@ -31,7 +30,6 @@ impl RunnerEnvironment {
         })
     }
 
-    /// Makes a path absolute.
     pub(super) fn absolute(&self, path: &Path) -> PathBuf {
         let joined = self.current_dir.join(path);
         // Only removes `.` and doubled slashes: symbolic links stay valid.

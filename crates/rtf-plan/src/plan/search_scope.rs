@@ -34,7 +34,6 @@ pub(super) struct SearchScope<'a> {
     pub dir: &'a Path,
     /// A directory that is searched after `dir`.
     pub fallback_dir: Option<&'a Path>,
-    /// The suite's variables.
     pub suite_env: &'a Env,
     /// The variables of a test, a fixture or a hook.
     pub own_env: &'a Env,

@@ -42,7 +42,6 @@ pub(super) struct DeclaredSignals {
     pub of_tests: OfTests<DeclaredMonitor>,
     /// The names that the suite gives to its fixtures.
     pub fixtures: Vec<String>,
-    /// Whether the suite has a simulated clock.
     pub has_clock: bool,
 }
 

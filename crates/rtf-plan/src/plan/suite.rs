@@ -32,7 +32,6 @@ const DIRECT_PLUGINS: &str = "plug-ins";
 #[derive(Debug)]
 pub(super) struct SuiteDraft {
     pub plan: SuitePlan,
-    /// Its tests of other frameworks.
     pub frameworks: FrameworkTests,
 }
 

@@ -43,7 +43,6 @@ impl SharedLimits {
     }
 }
 
-/// The declared name and plug-in of a test.
 struct NamedPlugin<'t> {
     name: Option<Spanned<String>>,
     plugin: DeclaredPlugin,
@@ -64,19 +63,14 @@ pub(super) struct TestPlanner<'p, 'a, 'c> {
     faults: OfTests<DeclaredFault>,
 }
 
-/// The planned tests of a suite.
 pub(super) struct PlannedTests {
     pub tests: Vec<TestPlan>,
-    /// Those of other frameworks.
     pub frameworks: FrameworkTests,
-    /// Their monitors.
     pub monitors: OfTests<DeclaredMonitor>,
-    /// Their faults.
     pub faults: OfTests<DeclaredFault>,
 }
 
 impl<'p, 'a, 'c> TestPlanner<'p, 'a, 'c> {
-    /// Creates a planner without tests.
     pub fn new(
         planner: &'p mut PluginPlanner<'a, 'c>,
         source: &'p Arc<SourceText>,

@@ -65,11 +65,8 @@ pub struct SuitePlan {
     pub folder: PathBuf,
     /// Environment variables of all its processes, in order.
     pub env: Arc<Vec<(String, String)>>,
-    /// The private resources that it gets when it starts.
     pub isolate: Isolation,
-    /// Whether it got them.
     pub preparation: Preparation,
-    /// The settings that need no name to be resolved.
     pub settings: SuiteSettings,
     /// The episodes of a campaign that it runs; empty for one run without a campaign.
     pub episodes: Arc<[Episode]>,
@@ -96,7 +93,6 @@ impl SuitePlan {
     }
 }
 
-/// The plan of a simulated clock.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ClockPlan {
     /// The limit in wall time, as a multiple of a test's limit; at least 1.
@@ -108,7 +104,6 @@ pub struct ClockPlan {
 pub struct Isolation {
     /// Whether it gets a private network.
     pub network: bool,
-    /// Whether it gets private middleware.
     pub middleware: OwnMiddleware,
     /// The names of its ports, sorted.
     pub ports: Vec<String>,
@@ -135,7 +130,6 @@ pub enum Preparation {
     /// No isolation is needed, or the suite has not started yet.
     #[default]
     NotNeeded,
-    /// The isolation that it got.
     Done(SuitePrepared),
     /// The isolation is not available, for this reason; the suite is not started.
     Refused(String),
@@ -149,13 +143,11 @@ pub struct FixturePlan {
     /// The dependencies, as indexes of the suite's fixtures. They must be ready
     /// before its set-up and are torn down after it.
     pub depends: Vec<usize>,
-    /// The plug-in or process.
     pub body: FixtureBody,
     /// The values that it must provide before it is ready.
     pub provides: Vec<ProvidePlan>,
     /// Environment variables in addition to the suite's.
     pub env: Vec<(String, String)>,
-    /// The limits of its phases.
     pub limits: FixtureLimits,
     /// How it is reset between two episodes of a campaign; without, it is restarted.
     pub reset: Option<ResetPlan>,
@@ -186,9 +178,7 @@ impl FixturePlan {
 /// How a fixture is reset between two episodes of a campaign.
 #[derive(Clone, Debug)]
 pub struct ResetPlan {
-    /// The plug-in or command.
     pub body: HookBody,
-    /// The limit.
     pub timeout: Duration,
     /// After how many episodes the fixture is restarted; `None`: never.
     pub restart_every: Option<u32>,
@@ -203,7 +193,6 @@ pub struct ProvidePlan {
     pub secret: bool,
 }
 
-/// The limits of a fixture's phases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixtureLimits {
     /// From the start of its process until it is ready.
@@ -215,10 +204,8 @@ pub struct FixtureLimits {
     pub teardown: Duration,
 }
 
-/// The kinds of fixtures.
 #[derive(Clone, Debug)]
 pub enum FixtureBody {
-    /// A fixture plug-in in a host.
     Plugin(PluginPlan),
     /// The built-in `type="process"`.
     Process(Arc<ProcessPlan>),
@@ -227,7 +214,6 @@ pub enum FixtureBody {
 }
 
 impl FixtureBody {
-    /// Returns the probes of a process.
     #[must_use]
     pub fn probes(&self) -> Option<&ProbePlans> {
         match self {
@@ -247,23 +233,18 @@ pub struct TestPlan {
     pub was: Option<Box<str>>,
     /// The line of its tag in the file of the suite; 0 for a plug-in on the command line.
     pub line: u32,
-    /// The plug-in.
     pub plugin: PluginPlan,
     /// Environment variables in addition to the suite's.
     pub env: Vec<(String, String)>,
-    /// The limits of its phases; tests with equal limits share them.
+    /// Tests with equal limits share them.
     pub limits: Arc<TestLimits>,
-    /// The settings that need no name to be resolved.
     pub settings: TestSettings,
     /// The tags of the suite and of the test.
     pub tags: Vec<String>,
-    /// Its combination of the values of a matrix.
     pub combination: Option<Box<CombinationPlan>>,
-    /// The limits that it learns from earlier runs.
     pub learn: Vec<LearnPlan>,
-    /// Those that are learned; set before the run starts.
+    /// Set before the run starts.
     pub learned: Vec<LearnedLimits>,
-    /// Its known failure.
     pub expected: Option<Box<ExpectedFailure>>,
     /// The cases that it runs; `None` for all.
     pub cases: Option<Box<CaseSelection>>,
@@ -310,7 +291,6 @@ impl TestPlan {
 /// How a host runs cases in programs of another framework.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct CasesInPrograms {
-    /// The limit of each case.
     pub case_timeout: Option<Duration>,
     /// Whether each case needs a separate process.
     pub separate: bool,
@@ -327,7 +307,6 @@ pub struct CasesInPrograms {
 pub struct ListedCase {
     /// The name, unique in the test. It may contain slashes.
     pub name: String,
-    /// The position of its source.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub location: Option<Location>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -342,11 +321,9 @@ pub struct ListedCase {
 pub struct CombinationPlan {
     /// The name of the test with the matrix.
     pub test: Arc<str>,
-    /// The values.
     pub parameters: Vec<Parameter>,
 }
 
-/// The limits of a test's phases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TestLimits {
     /// From the start of its process to `setup`.
@@ -368,11 +345,9 @@ pub struct HookPlan {
     /// The name, unique in the suite.
     pub name: String,
     pub on: Vec<Trigger>,
-    /// The plug-in or command.
     pub body: HookBody,
     /// Environment variables in addition to the suite's.
     pub env: Vec<(String, String)>,
-    /// The limit.
     pub timeout: Duration,
 }
 
@@ -385,14 +360,12 @@ pub enum HookBody {
     Command(Vec<String>),
 }
 
-/// The plan of a plug-in and its host.
 #[derive(Clone, Debug)]
 pub struct PluginPlan {
     /// The type: `dll`, `lua`, `python`, `ruby`.
     pub plugin_type: Arc<str>,
     /// The absolute path of the plug-in's file.
     pub file: PathBuf,
-    /// The parameter string.
     pub param: String,
     /// The parameter string, split into arguments.
     pub args: Vec<String>,
@@ -404,7 +377,6 @@ pub struct PluginPlan {
 pub struct HostPlan {
     /// The program and its arguments.
     pub command: Vec<String>,
-    /// Environment variables that it needs.
     pub env: Vec<(String, String)>,
     /// Whether it can run as a fork server, which is forked for each test.
     pub forks: bool,

@@ -6,10 +6,8 @@ use rtf_model::Diagnostic;
 
 use crate::suite::{SourceText, Span};
 
-/// The position of a use.
 #[derive(Clone, Debug)]
 pub(super) enum UseSite {
-    /// In a suite file.
     Suite(Arc<SourceText>, Span),
     CommandLine,
 }
@@ -42,7 +40,6 @@ impl UseSites {
         }
     }
 
-    /// Checks whether there is no use.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
@@ -62,7 +59,6 @@ impl UseSites {
     }
 }
 
-/// The role in which a suite uses a plug-in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum PluginRole {
     Test,

@@ -11,15 +11,10 @@ use crate::plan::{SuitePlan, TestPlan};
 /// A condition on a test.
 #[derive(Clone, Debug)]
 pub enum Filter {
-    /// Every test.
     All,
-    /// No test.
     None,
-    /// Tests that the inner filter does not match.
     Not(Box<Filter>),
-    /// Tests that both filters match.
     And(Box<Filter>, Box<Filter>),
-    /// Tests that at least one filter matches.
     Or(Box<Filter>, Box<Filter>),
     /// Tests with a value of the subject that matches.
     Has(Subject, Matcher),
@@ -28,10 +23,8 @@ pub enum Filter {
     Case(CaseSelector),
 }
 
-/// The result of a filter for a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FilterMatch {
-    /// The test is not selected.
     None,
     /// The test is selected with all its cases.
     All,
@@ -74,7 +67,6 @@ pub enum Subject {
     Type,
     /// The name of its suite.
     Suite,
-    /// Its own name.
     Name,
     /// Its suite's file, as the user named it.
     File,
@@ -86,12 +78,10 @@ pub enum Subject {
 pub const SUBJECTS: [Subject; 6] =
     [Subject::Tag, Subject::Type, Subject::Suite, Subject::Name, Subject::File, Subject::Param];
 
-/// A comparison with a value.
 #[derive(Clone, Debug)]
 pub enum Matcher {
     /// The value equals the text, whose position is the label.
     Equals(String, Label),
-    /// The value contains the text.
     Contains(String),
     /// A part of the value matches.
     Matches(Regex),
@@ -99,7 +89,6 @@ pub enum Matcher {
 
 /// A test, planned or stored, whose values a filter compares.
 pub trait FilterSubject {
-    /// Calls `visit` with each value of a subject.
     fn visit_values(&self, subject: Subject, visit: &mut dyn FnMut(&str));
 }
 
@@ -109,7 +98,6 @@ impl FilterSubject for Candidate<'_> {
     }
 }
 
-/// A test and its suite.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate<'p> {
     pub suite: &'p SuitePlan,
@@ -150,7 +138,6 @@ impl Subject {
 }
 
 impl<'p> Candidate<'p> {
-    /// Calls `visit` with each value of a subject.
     pub fn for_each_value(self, subject: Subject, mut visit: impl FnMut(Cow<'p, str>)) {
         match subject {
             Subject::Tag => self.test.tags.iter().for_each(|tag| visit(tag.into())),
@@ -167,7 +154,6 @@ impl<'p> Candidate<'p> {
 }
 
 impl Filter {
-    /// Applies the filter to a test.
     #[must_use]
     pub fn apply(&self, candidate: &impl FilterSubject) -> FilterMatch {
         match self {
@@ -212,7 +198,6 @@ impl Filter {
         }
     }
 
-    /// Checks whether it has a condition on cases.
     #[must_use]
     pub fn has_cases(&self) -> bool {
         match self {

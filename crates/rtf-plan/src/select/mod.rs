@@ -46,7 +46,6 @@ pub struct Selection {
     pub shard: Option<Shard>,
 }
 
-/// The result of a selection.
 #[derive(Debug)]
 pub struct Selected {
     /// The plan with the selected tests; possibly empty.
@@ -60,7 +59,6 @@ pub struct Selected {
     pub problems: Vec<Diagnostic>,
 }
 
-/// Applies a selection.
 #[must_use]
 pub fn select(plan: Plan, selection: &Selection) -> Selected {
     let mut problems = warn_of_unknown_values(&plan, &selection.filters);
@@ -131,7 +129,6 @@ fn conflicting_cases(test: &str) -> Diagnostic {
         .hint("name the cases with `::`, or with a `case` filter, not with both")
 }
 
-/// Keeps the tests for which `keep` returns true.
 fn retain(suites: &mut [SuitePlan], mut keep: impl FnMut(&SuitePlan, &TestPlan) -> bool) {
     for suite in suites {
         let mut tests = std::mem::take(&mut suite.tests);

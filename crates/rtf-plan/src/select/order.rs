@@ -14,7 +14,6 @@ const UNKNOWN: Duration = Duration::from_secs(1);
 pub enum TestOrder {
     /// Tests whose last result is a problem, then the others.
     FailedFirst,
-    /// By duration, the slowest first.
     SlowestFirst,
 }
 

@@ -17,7 +17,6 @@ pub struct Shard {
     pub index: u32,
     /// The number of parts, at least 1.
     pub count: u32,
-    /// The method that assigns tests to parts.
     pub by: ShardBy,
 }
 

@@ -7,16 +7,12 @@ use jiff::SignedDuration;
 /// The maximum duration, 366 days: adding it to the current time never overflows.
 pub(crate) const MAX_DURATION: Duration = Duration::from_secs(366 * 24 * 60 * 60);
 
-/// The reason why a text is not a valid duration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DurationError {
-    /// Invalid syntax.
     #[error("not a duration like `250ms`, `90s`, `2min` or `1h 30m` (a bare number is seconds)")]
     Malformed,
-    /// Zero or below.
     #[error("must be longer than zero")]
     NotPositive,
-    /// Longer than 366 days.
     #[error("longer than 366 days")]
     TooLong,
 }

@@ -9,7 +9,6 @@ pub struct DeclaredFault {
     /// The position of the tag.
     pub span: Span,
     pub name: Spanned<String>,
-    /// What is done.
     pub effect: DeclaredEffect,
     /// When it is injected, since the start of the test; `None`: when a test does it.
     pub at: Option<FaultTime>,
@@ -19,16 +18,12 @@ pub struct DeclaredFault {
     pub seed: u32,
 }
 
-/// What a fault does.
 #[derive(Clone, Debug)]
 pub enum DeclaredEffect {
-    /// Kills processes.
     Kill(DeclaredTarget),
-    /// Stops processes.
     Stop(DeclaredTarget),
     /// Stops processes for a part of the time.
     Slow {
-        /// The processes.
         target: DeclaredTarget,
         /// The share of the time in which they may run, from 1 to 99.
         percent: u32,
@@ -39,12 +34,10 @@ pub enum DeclaredEffect {
     Disk {
         /// A directory on it.
         dir: Spanned<String>,
-        /// How much.
         amount: FaultAmount,
     },
     /// Impairs the packets of the suite's private network.
     Network {
-        /// What happens to the packets.
         fault: NetworkFault,
         /// The port from or to which they are; `None`: all.
         port: Option<Spanned<String>>,
@@ -53,7 +46,6 @@ pub enum DeclaredEffect {
     Values {
         /// The name of the proxy.
         fixture: Spanned<String>,
-        /// What happens to the messages.
         fault: ValuesFault,
     },
 }
@@ -61,14 +53,12 @@ pub enum DeclaredEffect {
 /// The processes of a fixture that a fault affects.
 #[derive(Clone, Debug)]
 pub struct DeclaredTarget {
-    /// The name of the fixture.
     pub fixture: Spanned<String>,
     /// The name of the processes; `None`: all.
     pub process: Option<String>,
 }
 
 impl DeclaredEffect {
-    /// The processes, if it affects some.
     #[must_use]
     pub fn target(&self) -> Option<&DeclaredTarget> {
         match self {

@@ -6,23 +6,16 @@
 use super::Span;
 use crate::placeholder::{Segment, segments};
 
-/// The text that opens a reference.
 pub(super) const OPEN: &str = "${fixture:";
 
-/// A reference to a value of a fixture.
 #[derive(Clone, Debug)]
 pub struct FixtureReference {
-    /// The name of the fixture.
     pub fixture: String,
-    /// The name of the value.
     pub value: String,
-    /// Its position.
     pub span: Span,
-    /// The element that contains it.
     pub user: ReferenceUser,
 }
 
-/// The references of a suite.
 #[derive(Clone, Debug, Default)]
 pub struct FixtureReferences {
     /// The well-formed references.

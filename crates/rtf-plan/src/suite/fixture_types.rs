@@ -11,9 +11,7 @@ pub struct DeclaredFixture {
     pub name: Option<Spanned<String>>,
     /// The fixtures that must be ready before it; `None` without the attribute.
     pub depends: Option<Vec<Spanned<String>>>,
-    /// The plug-in or process.
     pub body: FixtureKind,
-    /// The values that it provides.
     pub provides: Vec<DeclaredProvide>,
     /// How it is reset between two episodes of a campaign.
     pub reset: Option<DeclaredReset>,
@@ -37,9 +35,7 @@ pub struct DeclaredFixture {
 
 #[derive(Clone, Debug)]
 pub struct DeclaredReset {
-    /// The plug-in or program.
     pub body: HookKind,
-    /// The limit.
     pub timeout: Option<Duration>,
     /// After how many episodes the fixture is restarted instead.
     pub restart_every: Option<u32>,
@@ -47,7 +43,6 @@ pub struct DeclaredReset {
 
 #[derive(Clone, Debug)]
 pub enum FixtureKind {
-    /// A fixture plug-in.
     Plugin(DeclaredPlugin),
     /// The built-in `type="process"`.
     Process(Box<DeclaredProcess>),
@@ -60,16 +55,13 @@ pub enum FixtureKind {
 pub struct DeclaredProvide {
     /// The name, unique in the fixture.
     pub name: Spanned<String>,
-    /// Where the value comes from.
     pub source: DeclaredValueSource,
     /// Whether it is neither stored nor shown.
     pub secret: bool,
 }
 
-/// The source of a fixture's value.
 #[derive(Clone, Debug)]
 pub enum DeclaredValueSource {
-    /// The plug-in.
     Plugin,
     /// The first group of the first matching line of the output.
     Log(regex::Regex),
@@ -104,11 +96,9 @@ pub struct DeclaredProbes {
 /// A `<ready>` or `<alive>` probe.
 #[derive(Clone, Debug)]
 pub struct DeclaredProbe {
-    /// The kind, with its value.
     pub kind: DeclaredProbeKind,
     /// The position of the value.
     pub span: Span,
-    /// The interval.
     pub every: Option<Duration>,
     /// The limit for one answer.
     pub timeout: Option<Duration>,

@@ -19,7 +19,6 @@ const FEWEST_RUNS: u32 = 3;
 /// The distance of the limits from the median by default.
 const SIGMA: f64 = 4.0;
 
-/// The largest distance.
 const MAX_SIGMA: f64 = 1000.0;
 
 /// Reads the `<learn>` elements of a test.

@@ -8,12 +8,10 @@ use super::schema::{self, check, check_content};
 use super::{Span, Spanned};
 use crate::config::is_name;
 
-/// The matrix of a test.
 #[derive(Clone, Debug, Default)]
 pub struct DeclaredMatrix {
     /// Its dimensions, in order.
     pub dimensions: Vec<MatrixDimension>,
-    /// The excluded combinations.
     pub excludes: Vec<MatrixExclude>,
 }
 
@@ -34,7 +32,6 @@ pub struct MatrixExclude {
     pub values: Vec<(Spanned<String>, String)>,
 }
 
-/// A combination of a matrix.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Combination {
     /// Whether it is the first one of its test.

@@ -36,7 +36,6 @@ pub(super) fn read_envelope(
     Some(DeclaredEnvelope { span: ElementReader::tag(node), file })
 }
 
-/// Reads the monitors of an element.
 pub(super) fn read_all(
     reader: &mut ElementReader<'_>,
     parent: Node<'_, '_>,

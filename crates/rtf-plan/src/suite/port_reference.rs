@@ -8,7 +8,6 @@ use std::collections::btree_map::Entry;
 use super::Span;
 use crate::placeholder::{Segment, segments};
 
-/// The text that opens a reference.
 pub(super) const OPEN: &str = "${port:";
 
 /// The ports of a suite: name and first use, by environment variable.

@@ -12,20 +12,15 @@ use crate::wording::{nearest, quoted};
 
 /// The state shared by the readers of all elements.
 pub struct ElementReader<'a> {
-    /// The text of the file.
     pub source: &'a SourceText,
-    /// The problems found so far.
     pub problems: &'a mut Vec<Diagnostic>,
-    /// The ports found so far.
     pub(super) ports: Ports,
     /// The element that is being read.
     pub(super) user: ReferenceUser,
-    /// The references to values of fixtures found so far.
     pub(super) fixture_references: FixtureReferences,
 }
 
 impl ElementReader<'_> {
-    /// Records a problem.
     pub fn report(&mut self, problem: Diagnostic) {
         self.problems.push(problem);
     }
@@ -72,7 +67,6 @@ impl ElementReader<'_> {
         found
     }
 
-    /// Reads an attribute.
     pub fn attribute(&self, node: Node<'_, '_>, name: &str) -> Option<Spanned<String>> {
         let attribute = node.attribute_node(name)?;
         let span = Span::new(attribute.range_value());
@@ -95,7 +89,6 @@ impl ElementReader<'_> {
         Some(attribute)
     }
 
-    /// Reads a duration.
     pub fn duration(&mut self, node: Node<'_, '_>, name: &str) -> Option<Duration> {
         let attribute = self.attribute(node, name)?;
         match parse_duration(&attribute.value) {
@@ -113,7 +106,6 @@ impl ElementReader<'_> {
         }
     }
 
-    /// Reads `true` or `false`.
     pub fn boolean(&mut self, node: Node<'_, '_>, name: &str) -> Option<bool> {
         self.choice(node, name, &[("true", true), ("false", false)])
     }

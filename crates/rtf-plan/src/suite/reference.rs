@@ -12,7 +12,6 @@ use super::{
 use crate::placeholder::{Segment, segments};
 use crate::wording::nearest;
 
-/// A kind of reference.
 struct ReferenceSyntax {
     /// The text that opens a reference: `${port:`.
     open: &'static str,
@@ -156,7 +155,6 @@ pub(super) fn is_in(text: &str) -> bool {
     port_reference::mentions(text) || fixture_reference::mentions(text)
 }
 
-/// Returns the position of a part of a value.
 fn position(reader: &ElementReader<'_>, value: &Spanned<String>, part: Range<usize>) -> Span {
     position_of(reader.source, value, part)
 }

@@ -108,7 +108,6 @@ fn read_suite(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredSui
     suite
 }
 
-/// Reads a child of `<suite>`.
 fn read_child(
     reader: &mut ElementReader<'_>,
     node: Node<'_, '_>,

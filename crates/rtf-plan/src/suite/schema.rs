@@ -14,7 +14,6 @@ pub struct ElementSchema {
     /// The element's name in messages.
     pub name: &'static str,
     pub attributes: &'static [&'static str],
-    /// Its child elements.
     pub elements: &'static [&'static str],
     /// Whether it may contain text.
     pub text: bool,

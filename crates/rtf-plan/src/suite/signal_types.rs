@@ -9,7 +9,6 @@ use super::{Span, Spanned};
 /// A `<signals>`, or a `<signal>` that is not in one.
 #[derive(Clone, Debug)]
 pub struct DeclaredSource {
-    /// Where the samples come from.
     pub kind: DeclaredSourceKind,
     /// The signals, in the order of the values on a line; one for a fixture.
     pub signals: Vec<DeclaredSignal>,
@@ -43,7 +42,6 @@ pub enum DeclaredSourceKind {
     Test(TestQuantity),
     /// The processes of a fixture.
     Fixture {
-        /// The name of the fixture.
         name: Spanned<String>,
         quantity: ProcessQuantity,
         /// The interval.
@@ -51,7 +49,6 @@ pub enum DeclaredSourceKind {
     },
 }
 
-/// The middleware of a topic or port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SignalMiddleware {
     Ros,
@@ -85,7 +82,6 @@ pub struct DeclaredMonitor {
     /// The position of the tag.
     pub span: Span,
     pub name: Spanned<String>,
-    /// What a violation means.
     pub severity: FindingSeverity,
     pub formula: Spanned<String>,
 }

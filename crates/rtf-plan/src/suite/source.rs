@@ -21,7 +21,6 @@ impl Span {
         Self { start: cut(range.start), end: cut(range.end) }
     }
 
-    /// Returns the span as a range.
     #[must_use]
     pub fn range(self) -> std::ops::Range<usize> {
         self.start as usize..self.end as usize
@@ -39,12 +38,10 @@ impl Span {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Spanned<T> {
     pub value: T,
-    /// Its position.
     pub span: Span,
 }
 
 impl<T> Spanned<T> {
-    /// Creates a value with a position.
     pub fn new(value: T, span: Span) -> Self {
         Self { value, span }
     }
@@ -59,7 +56,7 @@ pub struct SourceText {
 }
 
 impl SourceText {
-    /// Creates a text. `name` is the user's name of the file.
+    /// `name` is the user's name of the file.
     #[must_use]
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
         let text = text.into();
@@ -82,7 +79,6 @@ impl SourceText {
         &self.text
     }
 
-    /// Creates a label for a position in this file.
     #[must_use]
     pub fn label(&self, span: Span, text: impl Into<String>) -> Label {
         let start = self.boundary(span.start as usize);
@@ -139,7 +135,6 @@ impl SourceMap {
         self.files.iter().find(|source| source.name == file).map(|source| source.text())
     }
 
-    /// Adds the texts of `more`.
     pub fn append(&mut self, more: Self) {
         self.files.extend(more.files);
     }

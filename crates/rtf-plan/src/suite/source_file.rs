@@ -50,10 +50,8 @@ fn begins_with(path: &Path, element: &str) -> bool {
     read.is_ok() && prepass::root_name(&String::from_utf8_lossy(&bytes)) == Some(element)
 }
 
-/// The reason why a file cannot be read.
 #[derive(Debug)]
 pub struct UnreadableFile {
-    /// The error.
     pub problem: Diagnostic,
     /// The file's text, if the error points into it.
     pub source: Option<SourceText>,

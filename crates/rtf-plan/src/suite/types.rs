@@ -21,9 +21,7 @@ pub struct DeclaredSuite {
     pub env: Vec<(String, String)>,
     /// Tags of all its tests.
     pub tags: Vec<String>,
-    /// The private resources that it requests.
     pub isolate: DeclaredIsolation,
-    /// The settings that need no name to be resolved.
     pub settings: SuiteSettings,
     /// The simulated clock; `None` for the wall clock.
     pub clock: Option<DeclaredClock>,
@@ -41,7 +39,6 @@ pub struct DeclaredSuite {
     pub faults: Vec<DeclaredFault>,
     /// The tests, in order.
     pub tests: Vec<DeclaredTest>,
-    /// The references to values of fixtures.
     pub fixture_references: FixtureReferences,
 }
 
@@ -94,7 +91,6 @@ pub struct RequiredResource {
 pub struct DeclaredIsolation {
     /// Whether it gets a private network.
     pub network: bool,
-    /// Whether its middleware is private or shared.
     pub middleware: Option<DeclaredMiddleware>,
     /// The names of its ports, sorted.
     pub ports: Vec<String>,
@@ -103,7 +99,6 @@ pub struct DeclaredIsolation {
 /// A simulated clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DeclaredClock {
-    /// The source of the time.
     pub source: ClockSource,
     /// The limit in wall time, as a multiple of a test's limit.
     pub backstop: Option<u32>,
@@ -111,7 +106,6 @@ pub struct DeclaredClock {
     pub span: Span,
 }
 
-/// A source of simulated time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClockSource {
     /// The ROS 1 topic `/clock`.
@@ -153,11 +147,9 @@ pub struct DeclaredTest {
     pub name: Option<Spanned<String>>,
     /// Its former name.
     pub was: Option<String>,
-    /// The plug-in and its parameters.
     pub plugin: DeclaredPlugin,
     /// The limits, including those of the suite.
     pub limits: DeclaredLimits,
-    /// The settings that need no name to be resolved.
     pub settings: TestSettings,
     /// The attributes about its cases; `None` if it has none of them.
     pub cases: Option<Box<DeclaredCases>>,
@@ -165,11 +157,8 @@ pub struct DeclaredTest {
     pub tags: Vec<String>,
     /// Environment variables in addition to the suite's.
     pub env: Vec<(String, String)>,
-    /// The limits that it learns from earlier runs.
     pub learn: Vec<LearnPlan>,
-    /// The monitors of this test.
     pub monitors: Vec<DeclaredMonitor>,
-    /// The faults of this test.
     pub faults: Vec<DeclaredFault>,
     pub known_failure: Option<Box<DeclaredKnownFailure>>,
     /// The values with which it runs; `None` for a test without a matrix.
@@ -183,13 +172,11 @@ pub struct DeclaredTest {
 pub struct LearnPlan {
     /// The position of the tag.
     pub span: Span,
-    /// The name of the measurement.
     pub measurement: String,
     /// The fewest runs from which limits are learned.
     pub min_runs: u32,
     /// The distance of the limits from the median, in robust standard deviations.
     pub sigma: f64,
-    /// Which limits there are.
     pub limits: LearnedSides,
     /// Runs before this time do not count: the change at it is accepted.
     pub since: Option<Timestamp>,
@@ -238,11 +225,9 @@ pub enum TestIsolation {
 /// A known failure: in a suite `expect`, in an `rtf.toml` `[[quarantine]]`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeclaredKnownFailure {
-    /// The verdicts that it covers.
     pub verdicts: Vec<Verdict>,
     /// The issue: a URL or a text.
     pub issue: Option<String>,
-    /// Why the test fails.
     pub reason: Option<String>,
     /// The last day on which it applies.
     pub until: Option<Spanned<Date>>,
@@ -253,11 +238,8 @@ pub struct DeclaredKnownFailure {
 pub struct TestSettings {
     /// The number of repetitions, at least 1.
     pub repetitions: u32,
-    /// The reaction to a fixture that collapses while the test runs.
     pub after_collapse: AfterCollapse,
-    /// The reaction to leftover processes.
     pub leaks: Leaks,
-    /// The retries after a failure.
     pub retries: Retries,
     /// Whether the rest of the suite is skipped unless the test passes.
     pub critical: bool,
@@ -284,7 +266,6 @@ impl Default for TestSettings {
     }
 }
 
-/// The retries of a test after a failure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Retries {
     /// The maximum number of retries of each repetition.
@@ -299,7 +280,6 @@ pub struct DeclaredLimits {
     pub load: Option<Duration>,
     pub setup: Option<Duration>,
     pub run: Option<Duration>,
-    /// For `tearDown`.
     pub teardown: Option<Duration>,
     /// The time in `run` after which the test is reported as slow.
     pub slow: Option<Duration>,

@@ -12,12 +12,10 @@ const MAX_DEPTH: usize = 64;
 /// The most operations: each one is a level of the tree, whose left side they share.
 const MAX_OPERATIONS: usize = 1000;
 
-/// An invalid text.
 #[derive(Debug)]
 pub(super) struct SyntaxError {
     /// What is expected or found.
     pub message: String,
-    /// The part of the text.
     pub at: Range<usize>,
 }
 

@@ -13,7 +13,6 @@ use crate::suite::SourceText;
 /// The maximum size of a plug-in from which a diagnostic quotes.
 const MAX_QUOTED_BYTES: u64 = 4 * 1024 * 1024;
 
-/// Diagnoses the answers about a group's files.
 pub(super) fn diagnose(
     index: usize,
     group: &CheckGroup,
