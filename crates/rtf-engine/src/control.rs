@@ -19,7 +19,6 @@ pub enum StopLevel {
 /// A request to end the run early.
 #[derive(Clone, Debug)]
 pub struct Stop {
-    /// How quickly.
     pub level: StopLevel,
     /// The reason, for users: `SIGINT`.
     pub reason: String,
@@ -62,7 +61,6 @@ pub struct QuestionReply {
     pub question: u32,
     /// The answer; `None` declines to answer.
     pub answer: Option<String>,
-    /// The person.
     pub by: Respondent,
 }
 

@@ -7,7 +7,7 @@ use rtf_model::{Event, EventKind, Micros, Source};
 
 /// Receives the events of a run.
 pub trait EventSink: Send + Sync + std::fmt::Debug {
-    /// Receives an event. Must not block.
+    /// Must not block.
     fn emit(&self, event: Event);
 
     /// Approximately how many bytes of a source's events wait to be reported.

@@ -44,12 +44,10 @@ struct ProvidedValue {
 }
 
 impl FixtureValues {
-    /// Creates the store of a suite.
     pub fn new(suite: &SuitePlan) -> Self {
         Self { expands: suite.refers_to_values, ..Self::default() }
     }
 
-    /// Stores a value of a fixture.
     pub fn set(&mut self, fixture: usize, names: (&str, &str), value: Value, is_secret: bool) {
         let name = format!("{}.{}", names.0, names.1);
         let variable = FixtureProvided::variable(names.0, names.1);
@@ -62,7 +60,6 @@ impl FixtureValues {
         self.version += 1;
     }
 
-    /// Stores the parameters of an episode.
     pub fn begin_episode(&mut self, episode: Episode) {
         self.episode = Some(episode);
         self.version += 1;
@@ -173,7 +170,6 @@ impl FixtureValues {
         present.chain(&self.former_secrets).map(String::as_str)
     }
 
-    /// Whether a value is a secret.
     pub fn has_secrets(&self) -> bool {
         self.secrets().next().is_some()
     }
@@ -198,7 +194,6 @@ impl FixtureValues {
         }
     }
 
-    /// Replaces all secrets in a text.
     pub fn mask_text(&self, mut text: String) -> String {
         for secret in self.secrets().filter(|secret| !secret.is_empty()) {
             if text.contains(secret) {

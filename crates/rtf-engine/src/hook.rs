@@ -53,12 +53,10 @@ pub struct HookJudgement {
     limit: Duration,
     answer: Option<Answer>,
     problem: Option<String>,
-    /// What it printed.
     log: LogWatch,
 }
 
 impl HookJudgement {
-    /// Starts the judgement of a hook with this limit.
     pub fn new(is_plugin: bool, limit: Duration) -> Self {
         let (answer, problem, log) = (None, None, LogWatch::default());
         Self { is_plugin, is_adopted: false, limit, answer, problem, log }
@@ -69,7 +67,6 @@ impl HookJudgement {
         Self { is_adopted: true, ..Self::new(is_plugin, limit) }
     }
 
-    /// Records a problem.
     pub fn fail(&mut self, problem: impl Into<String>) {
         self.problem.get_or_insert(problem.into());
     }
@@ -86,7 +83,6 @@ impl HookJudgement {
         self.log.push(stream, bytes);
     }
 
-    /// Takes a notification of its host into account.
     pub fn notified(&mut self, notification: &Notification) {
         let problem = match notification {
             Notification::Message(message) => {
@@ -119,7 +115,6 @@ impl HookJudgement {
         }
     }
 
-    /// Takes an invalid message into account.
     pub fn protocol_violated(&mut self, what: &str) {
         // The runner may have read the beginning of the line.
         if !self.is_adopted {

@@ -180,7 +180,6 @@ impl LogWatch {
         self.awaited.first()
     }
 
-    /// Whether nothing was printed.
     pub fn is_silent(&self) -> bool {
         self.lines.iter().all(|line| line.printed == 0)
     }

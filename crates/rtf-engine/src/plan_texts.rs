@@ -14,14 +14,12 @@ pub trait Substitution {
     /// Returns a text with all references replaced.
     fn expand(&self, text: &str) -> String;
 
-    /// Substitutes in a text.
     fn text(&self, text: &mut String) {
         if self.is_in(text) {
             *text = self.expand(text);
         }
     }
 
-    /// Substitutes in several texts.
     fn texts(&self, texts: &mut [String]) {
         texts.iter_mut().for_each(|text| self.text(text));
     }
@@ -31,7 +29,6 @@ pub trait Substitution {
         env.iter_mut().for_each(|(_, value)| self.text(value));
     }
 
-    /// Substitutes in all texts of a suite.
     fn suite(&self, plan: &mut SuitePlan) {
         self.text(&mut plan.settings.environment);
         self.env(Arc::make_mut(&mut plan.env).as_mut_slice());
@@ -52,7 +49,6 @@ pub trait Substitution {
         }
     }
 
-    /// Substitutes in a fixture.
     fn fixture(&self, body: &mut FixtureBody) {
         match body {
             FixtureBody::Plugin(plugin) => self.plugin(plugin),
@@ -69,7 +65,6 @@ pub trait Substitution {
         }
     }
 
-    /// Substitutes in a plug-in.
     fn plugin(&self, plugin: &mut PluginPlan) {
         self.text(&mut plugin.param);
         self.texts(&mut plugin.args);
@@ -79,7 +74,6 @@ pub trait Substitution {
         }
     }
 
-    /// Substitutes in a process.
     fn process(&self, process: &mut ProcessPlan) {
         self.texts(&mut process.command);
         if let Some(remote) = &mut process.remote {
@@ -89,14 +83,12 @@ pub trait Substitution {
         self.probes(&mut process.probes);
     }
 
-    /// Substitutes in probes.
     fn probes(&self, probes: &mut ProbePlans) {
         let values = probes.values.iter_mut().map(|value| &mut value.probe);
         let all = probes.ready.iter_mut().chain(&mut probes.alive).chain(values);
         all.for_each(|probe| self.probe(probe));
     }
 
-    /// Substitutes in a probe.
     fn probe(&self, probe: &mut Probe) {
         match &mut probe.kind {
             ProbeKind::Tcp(text) | ProbeKind::Http(text) => self.text(text),

@@ -58,7 +58,6 @@ pub struct StartedCase {
 pub struct CaseResult {
     /// The outcome, if no message reports it.
     pub outcome: Option<Outcome>,
-    /// The reason for the outcome.
     pub reason: Option<String>,
     /// How long the case took, if the framework measured it. Otherwise it is the time between
     /// the arrivals of its start and its end.
@@ -68,7 +67,6 @@ pub struct CaseResult {
 }
 
 impl CaseResult {
-    /// A result with a reason.
     pub fn new(outcome: Outcome, reason: impl Into<String>) -> Self {
         Self { outcome: Some(outcome), reason: Some(reason.into()), ..Self::default() }
     }

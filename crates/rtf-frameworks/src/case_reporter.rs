@@ -70,7 +70,6 @@ pub struct CaseReporter<'a> {
 }
 
 impl<'a> CaseReporter<'a> {
-    /// A reporter for an attempt of a test.
     #[must_use]
     pub fn new(session: &'a Session) -> Self {
         Self {

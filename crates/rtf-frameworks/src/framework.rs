@@ -52,9 +52,7 @@ impl ListError {
 #[derive(Clone, Debug)]
 pub struct Launch<'a> {
     pub test: &'a TestProgram,
-    /// The cases that it runs.
     pub cases: Selection<'a>,
-    /// Where it reports.
     pub channel: OpenChannel,
     /// The selectors of the runner; all cases if there is none.
     pub wanted: &'a [CaseSelector],
@@ -107,7 +105,6 @@ pub enum StackDump {
 #[error("{0}")]
 pub struct Garbage(pub String);
 
-/// A test framework.
 pub trait Framework {
     /// Lists the cases of a test; `None` if the framework cannot.
     ///
@@ -123,7 +120,6 @@ pub trait Framework {
         self.list(test)
     }
 
-    /// Where the program reports.
     fn channel(&self) -> ReportChannel;
 
     /// Whether [`ReportReader::output`] needs the program's output.
@@ -201,7 +197,6 @@ pub trait Framework {
         false
     }
 
-    /// How stacks are dumped.
     fn stack_dump(&self) -> StackDump {
         StackDump::Debugger
     }

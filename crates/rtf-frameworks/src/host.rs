@@ -23,7 +23,6 @@ pub struct FrameworkHost {
 }
 
 impl FrameworkHost {
-    /// A host for this framework.
     #[must_use]
     pub fn new(
         name: &'static str,

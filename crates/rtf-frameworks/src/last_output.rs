@@ -4,12 +4,9 @@ use std::collections::VecDeque;
 
 use rtf_model::FailureLine;
 
-/// Output of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OutputStream {
-    /// Standard output.
     Stdout,
-    /// Standard error.
     Stderr,
 }
 
@@ -33,7 +30,6 @@ struct LastLines {
 }
 
 impl LastOutput {
-    /// Adds a piece of the output.
     pub fn add(&mut self, stream: OutputStream, bytes: &[u8]) {
         match stream {
             OutputStream::Stdout => self.stdout.add(bytes),

@@ -22,9 +22,7 @@ const QUOTED_BYTES: usize = 2000;
 /// What a program printed, and how it ended.
 #[derive(Debug)]
 pub struct Listed {
-    /// Standard output.
     pub stdout: Vec<u8>,
-    /// Standard error.
     pub stderr: Vec<u8>,
     /// How it ended.
     pub status: ExitStatus,

@@ -11,7 +11,6 @@ use std::os::unix::ffi::OsStrExt as _;
 /// The exit code after an error of the host itself.
 const EXIT_ERROR: c_int = 2;
 
-/// The entry point.
 #[unsafe(no_mangle)]
 extern "C" fn main(argc: c_int, argv: *const *const c_char) -> c_int {
     let count = usize::try_from(argc).unwrap_or_default();

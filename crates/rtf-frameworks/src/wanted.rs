@@ -39,7 +39,6 @@ impl WantedCases {
         wanted
     }
 
-    /// Whether the case with this name is wanted.
     #[must_use]
     pub fn includes(&self, name: &str) -> bool {
         self.all
@@ -50,7 +49,6 @@ impl WantedCases {
             || self.texts.iter().any(|text| name.contains(text.as_str()))
     }
 
-    /// Whether all cases are wanted.
     #[must_use]
     pub fn is_all(&self) -> bool {
         self.all

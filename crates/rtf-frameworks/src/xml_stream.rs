@@ -17,7 +17,6 @@ const BYTE_ORDER_MARK: &str = "\u{feff}";
 /// How much of a bad line an error quotes.
 const QUOTED_CHARS: usize = 200;
 
-/// The attributes of an element.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Attributes(Vec<(String, String)>);
 
@@ -32,12 +31,10 @@ impl Attributes {
 /// The beginning or the end of an element.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum XmlEvent {
-    /// An element begins.
     Start {
         name: String,
         attributes: Attributes,
     },
-    /// An element ends.
     End {
         name: String,
         /// The text in it, without that of the elements in it.

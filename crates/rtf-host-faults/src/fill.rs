@@ -22,7 +22,6 @@ const BLOCK: u64 = 4096;
 /// What stays free on the file system of the results.
 const RESERVE: u64 = 64 * MIB;
 
-/// Allocated memory.
 pub(crate) type Memory = Vec<Vec<u8>>;
 
 /// Makes the system end this process first when memory runs out.

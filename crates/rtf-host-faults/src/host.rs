@@ -13,7 +13,6 @@ use crate::injector::Injector;
 use crate::settings::{EffectSettings, Settings};
 use crate::{fill, pauses, requests, scheduler};
 
-/// The fixture.
 pub(crate) struct FaultsHost {
     session: Session,
     settings: Arc<Settings>,

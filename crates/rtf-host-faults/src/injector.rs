@@ -50,7 +50,6 @@ pub(crate) struct ActiveFault {
 /// Why a fault was not injected.
 #[derive(Debug)]
 pub(crate) enum NotInjected {
-    /// It is not possible.
     Failed(String),
     TestEnded,
 }

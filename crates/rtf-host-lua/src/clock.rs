@@ -23,7 +23,6 @@ impl Clock {
         }
     }
 
-    /// Whether its time is a simulator's.
     pub(crate) fn is_simulated(&self) -> bool {
         matches!(self, Self::Simulated(_))
     }

@@ -35,7 +35,6 @@ use crate::state::PluginState;
 const HOST: HostProgram<Option<PluginState>> =
     HostProgram { check: check::check, prepare, serve: serve_plugins };
 
-/// The entry point.
 #[unsafe(no_mangle)]
 extern "C" fn main(argc: c_int, argv: *const *const c_char) -> c_int {
     // SAFETY: these are the system's arguments of `main`.

@@ -17,7 +17,6 @@ const FIRST_LINE_LIMIT: Duration = Duration::from_secs(50);
 /// The interval at which set-up looks for them.
 const POLL: Duration = Duration::from_millis(2);
 
-/// The fixture.
 pub(crate) struct SignalsHost {
     session: Session,
     settings: Arc<Settings>,

@@ -64,7 +64,6 @@ impl RunningMonitor {
     }
 }
 
-/// A test that is reported about.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ReportedTest<'a> {
     pub session: &'a Session,

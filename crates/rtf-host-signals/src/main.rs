@@ -6,7 +6,6 @@
 
 use std::ffi::{c_char, c_int};
 
-/// The entry point.
 #[unsafe(no_mangle)]
 extern "C" fn main(argc: c_int, argv: *const *const c_char) -> c_int {
     // SAFETY: these are the system's arguments of `main`.

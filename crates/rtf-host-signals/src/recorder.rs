@@ -41,7 +41,6 @@ impl Recorder {
         &self.clock
     }
 
-    /// Takes a sample.
     pub fn sample(&mut self, sample: SignalSample) {
         self.last[sample.source] = Some(sample.time);
         for test in &mut self.tests {
@@ -104,7 +103,6 @@ impl Recorder {
         Duration::try_from_secs_f64(next.reduce(f64::min)?).ok()
     }
 
-    /// Sends the samples that were taken.
     pub fn send(&mut self) {
         self.tests.iter_mut().for_each(|test| test.send(&self.session));
     }

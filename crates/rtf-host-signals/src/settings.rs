@@ -36,7 +36,6 @@ pub(crate) struct ProcessSettings {
     /// The value of `RTF_OWNER` of the fixture's processes.
     pub owner: String,
     pub quantity: ProcessQuantity,
-    /// The interval.
     pub every: Duration,
 }
 

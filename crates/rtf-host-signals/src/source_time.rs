@@ -9,7 +9,6 @@ use rtf_model::SignalTime;
 pub(crate) struct SampleTime {
     /// As written; `None` if lines have no time.
     pub written: Option<f64>,
-    /// When it arrived.
     pub arrival: Instant,
 }
 
@@ -37,7 +36,6 @@ impl Origin {
         })
     }
 
-    /// The zero, if it is known.
     #[cfg(test)]
     pub fn zero(self) -> Option<f64> {
         self.0

@@ -15,7 +15,6 @@ use crate::source_time::{Origin, SampleTime, TestStart};
 /// The smallest distance of two samples: times are in microseconds.
 const RESOLUTION: f64 = 1e-6;
 
-/// A running test.
 #[derive(Debug)]
 pub(crate) struct TestRun {
     pub id: TestId,
@@ -258,7 +257,6 @@ impl TestRun {
         self.origins[source].zero()
     }
 
-    /// Sends the samples that were taken.
     pub fn send(&mut self, session: &Session) {
         self.batches.send(session);
     }

@@ -25,13 +25,11 @@ pub enum Incoming {
     Refused {
         /// The number, if there is one.
         id: Option<u64>,
-        /// The reason.
         error: RpcError,
     },
 }
 
 impl Incoming {
-    /// The request's number.
     #[must_use]
     pub fn id(&self) -> Option<u64> {
         match self {

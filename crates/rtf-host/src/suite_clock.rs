@@ -20,7 +20,6 @@ impl SuiteClock {
         Self { file: file.map(PathBuf::from) }
     }
 
-    /// Whether it is a simulated clock.
     pub fn is_simulated(&self) -> bool {
         self.file.is_some()
     }

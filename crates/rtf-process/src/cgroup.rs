@@ -59,12 +59,10 @@ pub struct Cgroup {
 }
 
 impl Cgroup {
-    /// Kills all its processes.
     pub fn kill(&self) {
         let _ = std::fs::write(self.dir.join("cgroup.kill"), "1");
     }
 
-    /// Returns its processes.
     pub fn members(&self) -> Vec<i32> {
         members(&self.dir)
     }

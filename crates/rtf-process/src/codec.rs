@@ -21,7 +21,6 @@ const SHOWN: usize = 200;
 #[derive(Debug)]
 pub enum HostMessage {
     Notification(Notification),
-    /// The reply to a request.
     Reply(u64, Reply<serde_json::Value>),
 }
 

@@ -81,9 +81,7 @@ struct ForkServerProcess {
 pub struct ChildEnds<'a> {
     /// Its end of the channel.
     pub channel: BorrowedFd<'a>,
-    /// Its standard output.
     pub stdout: BorrowedFd<'a>,
-    /// Its standard error.
     pub stderr: BorrowedFd<'a>,
 }
 
@@ -93,7 +91,6 @@ impl ForkServers {
         Self { mode, seen: Vec::new(), servers: Vec::new(), refused: Vec::new() }
     }
 
-    /// When hosts are forked.
     pub fn mode(&self) -> ForkMode {
         self.mode
     }

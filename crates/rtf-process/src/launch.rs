@@ -36,7 +36,6 @@ impl Launch {
         Self { request, scope, stack_file, cgroup: None, ahead: None }
     }
 
-    /// Starts the process ahead of time.
     pub fn start_ahead(&mut self, spawner: &Spawner) {
         self.ahead = Some(spawner.begin(self.full_request()));
     }

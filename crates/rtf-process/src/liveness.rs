@@ -49,7 +49,6 @@ enum ThreadState {
 }
 
 impl LivenessCheck {
-    /// Starts a check.
     pub fn new(pid: i32) -> Self {
         Self { pid, settled: HashSet::new(), running: HashMap::new(), polls: 0 }
     }

@@ -25,7 +25,6 @@ const MAX_REASON_BYTES: u64 = 4096;
 /// The longest value that is read completely, in bytes: more than the runner accepts.
 const MAX_VALUE_BYTES: u64 = 128 * 1024;
 
-/// The probes of a process.
 #[derive(Clone, Debug, Default)]
 pub struct Probes {
     /// Each must pass once before the process is ready.
@@ -42,7 +41,6 @@ pub struct Probes {
 #[derive(Clone, Debug)]
 pub struct ValueSpec {
     pub name: String,
-    /// Where it comes from.
     pub source: ValueSource,
     /// The interval at which the source is polled.
     pub interval: Duration,
@@ -88,7 +86,6 @@ pub enum ProbeTarget {
 /// Which probes a check evaluates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProbeSelection {
-    /// All of them.
     All,
     /// Those that start no program.
     Quick,

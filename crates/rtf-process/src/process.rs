@@ -17,9 +17,7 @@ pub struct StartedProcess {
     pub pid: i32,
     /// The runner's end of its channel.
     pub channel: Option<UnixStream>,
-    /// Its standard output.
     pub stdout: Option<ChildStdout>,
-    /// Its standard error.
     pub stderr: Option<ChildStderr>,
     /// The foreground of the terminal, if it has it.
     pub foreground: Option<Foreground>,

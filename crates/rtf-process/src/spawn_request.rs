@@ -23,7 +23,6 @@ pub enum Streams {
 /// and on back-pressure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProcessRole {
-    /// Runs a test.
     Test,
     Fixture,
     /// Is a hook, which must run under all circumstances.
@@ -41,7 +40,6 @@ pub struct SpawnRequest {
     pub working_dir: Option<PathBuf>,
     /// The first bytes written to its channel; `None` for a process without one.
     pub channel: Option<Vec<u8>>,
-    /// The captured outputs.
     pub streams: Streams,
     /// Whether the command is a host that supports forking, and may be forked.
     pub can_fork: bool,

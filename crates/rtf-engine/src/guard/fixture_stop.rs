@@ -24,7 +24,6 @@ const KILL_REQUESTS: u32 = 2;
 /// How a fixture's process is stopped.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FixtureStop {
-    /// The scope of its process.
     pub scope: String,
     /// The signal for its process group; none for a host, or a process on a remote machine, which
     /// end when their channel is closed.

@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 
 use rustix::net::{RecvFlags, recv};
 
-/// How often the guard checks the heartbeat.
 pub(super) const CHECK_INTERVAL: Duration = Duration::from_secs(1);
 
 /// The guard's end of the heartbeat socket. The runner notices when it is closed.

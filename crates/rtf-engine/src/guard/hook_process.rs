@@ -26,15 +26,12 @@ const OUTPUT_LIMIT: usize = 256 * 1024;
 /// The capacity of a pipe.
 const READ_BYTES: usize = 64 * 1024;
 
-/// The ends of a process's streams.
 pub type StreamEnds = Vec<(ProcessStream, OwnedFd)>;
 
-/// A hook's process.
 #[derive(Debug)]
 pub(super) struct HookProcess {
     pub hook: HookId,
     pub pid: i32,
-    /// The scope of the process.
     pub scope: String,
     pub streams: StreamEnds,
     pub deadline: Instant,

@@ -19,14 +19,12 @@ use super::recovery_state::{HookStatus, RunningHook};
 use super::unix::GuardSignals;
 use crate::hook::{HOOK_NOT_RUN, HookJudgement, RUN_REQUEST, trigger_variables};
 
-/// The circumstances of a hook's run.
 #[derive(Debug)]
 pub struct HookContext<'a> {
     /// The reason, for users.
     pub reason: &'a str,
     /// The interrupted test of its suite.
     pub test: Option<&'a (TestId, String)>,
-    /// The network of its suite.
     pub network: Option<&'a Arc<Namespaces>>,
     /// Why it cannot be started, if a value of a fixture is missing.
     pub resolved: Result<(), String>,

@@ -7,10 +7,8 @@ use std::time::Instant;
 
 use rtf_model::{Diagnostic, Event, EventKind, HookId, LineSealer, Micros, OrderChecker, SuiteId};
 
-/// An event to write.
 #[derive(Debug)]
 pub struct TimedEvent {
-    /// Its time.
     pub at: Instant,
     pub kind: EventKind,
 }

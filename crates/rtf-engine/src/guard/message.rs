@@ -22,7 +22,6 @@ pub enum GuardMessage {
     RunStarted {
         /// Its journal, absolute.
         journal: PathBuf,
-        /// Its directory for temporary files.
         scratch_dir: PathBuf,
         /// The start of its clock, as the time since the fork.
         started: Duration,
@@ -65,12 +64,10 @@ pub enum GuardMessage {
         suite: SuiteId,
         test: TestId,
     },
-    /// A hook is about to start.
     HookStarting(HookStart),
     /// The hook's process was started, and waits for its request.
     HookStarted {
         hook: HookId,
-        /// Its process.
         pid: i32,
         /// The streams whose descriptors come with this line, in this order.
         streams: Vec<ProcessStream>,
@@ -82,16 +79,12 @@ pub enum GuardMessage {
     },
     /// A fixture's process was started. It must remain alive while hooks run, and is stopped then.
     FixtureStarted {
-        /// Its process.
         pid: i32,
         /// The streams whose descriptors come with this line, in this order.
         streams: Vec<ProcessStream>,
-        /// How it is stopped.
         stop: FixtureStop,
     },
-    /// A fixture's process has ended.
     FixtureEnded {
-        /// Its process.
         pid: i32,
     },
 }
@@ -99,7 +92,6 @@ pub enum GuardMessage {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HookStart {
     pub hook: HookId,
-    /// The scope of its process.
     pub scope: String,
     pub trigger: Trigger,
     /// The reason, for users.
@@ -132,9 +124,7 @@ pub struct HookSpec {
     pub command: Vec<String>,
     /// Environment variables in addition to the runner's.
     pub env: Vec<(String, String)>,
-    /// The working directory.
     pub working_dir: PathBuf,
-    /// Its time limit.
     pub limit: Duration,
     /// The request to its host, for a plug-in.
     pub plugin: Option<Plugin>,
@@ -160,7 +150,6 @@ impl HookSpec {
         Ok(())
     }
 
-    /// Converts a planned hook.
     pub fn new(suite: &SuitePlan, plan: &HookPlan) -> Self {
         let mut env = vec![(ENVIRONMENT_VARIABLE.to_owned(), suite.settings.environment.clone())];
         env.extend(unbuffered::variable());

@@ -34,7 +34,6 @@ pub struct MessageQueue {
 }
 
 impl MessageQueue {
-    /// Creates an empty queue.
     pub fn new(socket: UnixStream) -> Self {
         Self { socket, lines: VecDeque::new(), bytes: 0, descriptors: 0, has_lost_messages: false }
     }

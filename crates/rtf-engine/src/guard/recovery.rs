@@ -35,7 +35,6 @@ const FAULTS_PROGRAM: &str = "rtf-host-faults";
 pub struct Recovery {
     /// How the runner ended.
     pub reason: String,
-    /// The hooks that ran.
     pub hooks: Vec<RecoveredHook>,
     /// The runner's processes that were still alive, and were killed.
     pub left: Vec<LeakedProcess>,
@@ -45,7 +44,6 @@ pub struct Recovery {
     pub problem: Option<std::io::Error>,
 }
 
-/// A hook that ran.
 #[derive(Debug)]
 pub struct RecoveredHook {
     pub name: String,

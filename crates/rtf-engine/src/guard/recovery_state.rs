@@ -21,23 +21,18 @@ use crate::locks;
 pub struct RecoveryState {
     /// The run, once it has started.
     pub run: Option<RunFiles>,
-    /// Whether the run has finished.
     pub is_finished: bool,
-    /// The hooks of the suites.
     pub hooks: Vec<GuardedHook>,
     pub tests: RunningTests,
     /// The fixtures' processes.
     pub fixtures: HashMap<i32, GuardedFixture>,
-    /// The values that the fixtures of the suites have provided.
     pub values: HashMap<SuiteId, FixtureValues>,
-    /// The exclusive resources of the running suites.
     pub resources: HashMap<SuiteId, SuiteResources>,
 }
 
 #[derive(Debug)]
 pub struct RunFiles {
     pub journal: PathBuf,
-    /// Its directory for temporary files.
     pub scratch_dir: PathBuf,
     /// The start of its clock, as the time since the fork.
     pub started: Duration,
@@ -83,14 +78,12 @@ impl SuiteResources {
     }
 }
 
-/// A hook and its status.
 #[derive(Debug)]
 pub struct GuardedHook {
     pub spec: HookSpec,
     pub status: HookStatus,
     /// How often it was started.
     pub runs: u64,
-    /// Its last complete run.
     pub last_run: Option<FinishedHookRun>,
 }
 
@@ -98,9 +91,7 @@ pub struct GuardedHook {
 #[derive(Clone, Debug)]
 pub struct FinishedHookRun {
     pub start: HookStart,
-    /// The time of its start.
     pub started_at: Instant,
-    /// The time of its end.
     pub finished_at: Instant,
     /// Why the robot may not be in a safe state.
     pub problem: Option<String>,
@@ -112,7 +103,6 @@ pub enum HookStatus {
     /// It did not run.
     Due,
     Running(RunningHook),
-    /// It ran.
     Done,
     SuiteFinished,
 }
@@ -125,7 +115,6 @@ pub struct RunningHook {
     pub at: Instant,
     /// Its process, once the runner has reported it.
     pub pid: Option<i32>,
-    /// The streams of its process.
     pub streams: StreamEnds,
 }
 

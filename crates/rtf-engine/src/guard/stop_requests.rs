@@ -10,7 +10,6 @@ use std::time::{Duration, Instant};
 /// The time after a request in which signals belong to it.
 pub const WINDOW: Duration = Duration::from_millis(500);
 
-/// Counts the requests.
 #[derive(Debug, Default)]
 pub struct StopRequests {
     last: Option<Instant>,
@@ -28,7 +27,6 @@ impl StopRequests {
         !same
     }
 
-    /// Returns the number of requests.
     pub fn count(&self) -> u32 {
         self.count
     }

@@ -49,12 +49,10 @@ pub struct Guard {
 pub enum GuardOutcome {
     /// The runner ended in order.
     RunnerExited {
-        /// Its exit code.
         code: u8,
         /// Its leftover processes, which were killed: normally none.
         left: Vec<LeakedProcess>,
     },
-    /// The runner died, and the guard recovered.
     RunnerDied(Recovery),
 }
 

@@ -21,7 +21,6 @@ const KILL_REQUESTS: u32 = 3;
 /// The signals that request the end of the run.
 pub const STOP_SIGNALS: [i32; 3] = [libc::SIGINT, libc::SIGTERM, libc::SIGHUP];
 
-/// The signals that the guard handles.
 const HANDLED_SIGNALS: [i32; 6] =
     [libc::SIGINT, libc::SIGTERM, libc::SIGHUP, libc::SIGQUIT, libc::SIGTSTP, libc::SIGCHLD];
 
@@ -89,7 +88,6 @@ fn change_mask(how: i32, set: &libc::sigset_t) -> libc::sigset_t {
 pub struct BlockedSignals(libc::sigset_t);
 
 impl BlockedSignals {
-    /// Blocks them.
     pub fn block() -> Self {
         Self(change_mask(libc::SIG_BLOCK, &set_of(&HANDLED_SIGNALS)))
     }
@@ -105,7 +103,6 @@ impl Drop for BlockedSignals {
 #[derive(Debug)]
 pub struct GuardSignals {
     pipe: OwnedFd,
-    /// The requests to end the run.
     pub requests: StopRequests,
 }
 

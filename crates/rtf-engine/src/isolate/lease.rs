@@ -29,7 +29,6 @@ pub enum LeaseError {
     NoneLeft {
         /// What the number is for.
         kind: &'static str,
-        /// The permitted numbers.
         range: RangeInclusive<u16>,
     },
     /// The system refused.

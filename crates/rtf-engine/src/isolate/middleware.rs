@@ -25,11 +25,9 @@ const FORMER_RANGE_RELEASES: [&str; 3] = ["foxy", "galactic", "humble"];
 #[derive(Clone, Copy, Debug)]
 pub struct MiddlewareIds<'a> {
     pub run: &'a str,
-    /// The run's directory.
     pub run_dir: &'a Path,
     /// The leased ROS 2 domain.
     pub domain: Option<u16>,
-    /// The suite's ports.
     pub ports: &'a [SuitePort],
 }
 

@@ -151,7 +151,6 @@ impl<'p> PreparedSuite<'p> {
         Ok(())
     }
 
-    /// Returns the variables for tests with separate domains.
     pub fn test_domains(&self) -> Vec<Vec<(String, String)>> {
         self.test_domains.clone()
     }
@@ -175,27 +174,22 @@ impl<'p> PreparedSuite<'p> {
         Ok(ports)
     }
 
-    /// Returns the network of its processes.
     pub fn network(&self) -> Option<Network> {
         self.network.as_ref().map(|held| held.network().clone())
     }
 
-    /// Returns the network with its holder.
     pub fn held_network(&self) -> Option<&HeldNetwork> {
         self.network.as_ref()
     }
 
-    /// Returns the descriptors of its locks.
     pub fn locks(&self) -> impl Iterator<Item = BorrowedFd<'_>> {
         self.locks.iter().map(AsFd::as_fd)
     }
 
-    /// Returns the descriptors of its leases.
     pub fn leases(&self) -> impl Iterator<Item = BorrowedFd<'_>> {
         self.leases.iter().map(AsFd::as_fd)
     }
 
-    /// Releases all resources.
     pub async fn release(self, spawner: &Spawner) {
         // No process of the suite is left that could use a locked resource.
         self.locks.into_iter().for_each(Lock::release);

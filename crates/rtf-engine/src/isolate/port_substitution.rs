@@ -9,7 +9,6 @@ use rtf_plan::suite::port_reference;
 
 use crate::plan_texts::Substitution;
 
-/// Completes a plan.
 pub fn substitute(plan: &mut SuitePlan, preparation: Preparation) {
     if let Preparation::Done(prepared) = &preparation {
         // Even without ports, a text may contain an escaped reference.

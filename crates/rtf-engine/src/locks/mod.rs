@@ -32,7 +32,6 @@ pub const DEFAULT_DIR: &str = "/tmp/rtf-locks";
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct LockOwner {
-    /// The user's name.
     pub user: String,
     /// The machine's name.
     pub host: String,

@@ -16,10 +16,8 @@ const POLL_INTERVAL: Duration = Duration::from_millis(20);
 /// A shorter wait is not reported.
 const REPORT_AFTER: Duration = Duration::from_millis(200);
 
-/// Options for waiting for locks.
 #[derive(Clone, Debug)]
 pub struct LockOptions {
-    /// The directory of locks.
     pub dir: PathBuf,
     /// How long one suite waits for all its locks; `None` for no limit.
     pub limit: Option<Duration>,

@@ -13,13 +13,10 @@ use crate::guard::{FixtureStop, Link};
 /// The resources of a run that its suites share.
 #[derive(Debug)]
 pub struct RunContext {
-    /// The resources of the processes' tasks.
     pub tasks: Arc<TaskContext>,
-    /// The receiver of events.
     pub sink: Arc<dyn EventSink>,
     /// A directory for files that are removed at the end of the run.
     pub scratch_dir: PathBuf,
-    /// The connection to the guard.
     pub guard: Arc<Link>,
     /// How the only test is debugged.
     pub debug: Option<DebugOptions>,
@@ -30,7 +27,6 @@ pub struct RunContext {
 /// How the only test of a run is debugged, see `spec/debugging.md`.
 #[derive(Clone, Copy, Debug)]
 pub struct DebugOptions {
-    /// Its connection to a debugger.
     pub mode: DebugMode,
     /// Called with the id of its process when that has the terminal, or waits.
     pub notify: fn(DebugMode, i32),

@@ -30,13 +30,11 @@ impl Deadlines {
         self.at.remove(&deadline);
     }
 
-    /// Returns the next one.
     pub(super) fn next(&self, plan: &SuitePlan) -> Option<Duration> {
         let due = self.at.iter().filter(|(deadline, _)| !self.is_paused(**deadline, plan));
         due.map(|(_, at)| *at).min()
     }
 
-    /// Returns those that have passed.
     pub(super) fn passed(&self, now: Duration, plan: &SuitePlan) -> Vec<Deadline> {
         let passed = self.at.iter().filter(|(_, at)| **at <= now).map(|(deadline, _)| *deadline);
         passed.filter(|deadline| !self.is_paused(*deadline, plan)).collect()
@@ -52,14 +50,12 @@ impl Deadlines {
         is_due
     }
 
-    /// Pauses the deadlines of a host.
     pub(super) fn pause(&mut self, host: HostId, source: Source, now: Duration) {
         if !self.stopping.contains(&host) {
             self.paused.entry(host).or_insert((source, now));
         }
     }
 
-    /// Resumes the deadlines of a host.
     pub(super) fn resume(&mut self, host: HostId, now: Duration, plan: &SuitePlan) {
         let Some((source, since)) = self.paused.remove(&host) else { return };
         let late = now.saturating_sub(since);

@@ -20,13 +20,11 @@ pub struct FailLimit {
 }
 
 impl FailLimit {
-    /// Creates a counter with this limit.
     #[must_use]
     pub fn new(limit: Option<u32>) -> Self {
         Self { limit, ..Self::default() }
     }
 
-    /// Counts a finished attempt.
     pub fn count(&mut self, finished: &TestFinished) {
         let did_not_run = matches!(finished.verdict, Verdict::Skipped | Verdict::Interrupted);
         if finished.verdict.is_green() || finished.rerun || did_not_run {

@@ -55,7 +55,6 @@ pub struct RunOptions {
     pub run_dir: PathBuf,
     /// The run's journal, which the guard closes if the runner dies.
     pub journal: PathBuf,
-    /// The connection to the guard.
     pub guard: Arc<Link>,
     /// When hosts are forked.
     pub fork_mode: ForkMode,
@@ -67,7 +66,6 @@ pub struct RunOptions {
     pub jobs: NonZeroUsize,
     /// The requests to the running run.
     pub controls: Controls,
-    /// How the run waits for locks.
     pub locks: LockOptions,
     /// How the only test is debugged.
     pub debug: Option<DebugOptions>,

@@ -20,7 +20,6 @@ pub struct SuiteQueue<'p> {
 }
 
 impl<'p> SuiteQueue<'p> {
-    /// Adds all suites.
     pub fn new(suites: &'p [SuitePlan], jobs: NonZeroUsize) -> Self {
         Self { jobs, waiting: suites.iter().collect(), running: Vec::new() }
     }

@@ -11,7 +11,6 @@ use rtf_plan::plan::{CheckAnswer, CheckGroup, CheckReport};
 
 use super::unix;
 
-/// How a host ended.
 enum HostEnd {
     Exited { how: String, success: bool },
     Silent,

@@ -35,7 +35,6 @@ impl CaseReporter<'_> {
         self.report_end();
     }
 
-    /// The present process has reported everything.
     pub fn complete_report(&mut self) {
         self.is_complete = true;
     }
@@ -46,7 +45,6 @@ impl CaseReporter<'_> {
         self.is_complete
     }
 
-    /// Whether the present process reported a problem.
     #[must_use]
     pub fn has_problem(&self) -> bool {
         self.has_problem || self.open.iter().any(|open| open.has_problem)

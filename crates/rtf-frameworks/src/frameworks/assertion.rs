@@ -82,7 +82,6 @@ pub(super) fn unique_names(cases: &mut [ListedCase]) {
 pub(super) struct RunningCases(Vec<ListedCase>);
 
 impl RunningCases {
-    /// The cases of a process.
     pub fn new(cases: &[ListedCase]) -> Self {
         Self(cases.to_vec())
     }

@@ -10,7 +10,6 @@ use super::session_program::SessionReader;
 use crate::case::ListedCase;
 use crate::framework::{Framework, Launch, ListError, ReportChannel, ReportReader, TestProgram};
 
-/// The adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct AUnit;
 

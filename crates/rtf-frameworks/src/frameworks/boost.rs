@@ -61,7 +61,6 @@ const VARIABLES: [&str; 11] = [
     "BOOST_TEST_RESULT_CODE",
 ];
 
-/// The adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct BoostTest;
 

@@ -47,7 +47,6 @@ const RESERVED: [&str; 12] = [
 const EXCLUDE: &str = "exclude:";
 const EXCLUDE_WILDCARD: &str = "*xclude:";
 
-/// The adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct Catch2;
 

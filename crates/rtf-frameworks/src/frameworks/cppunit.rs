@@ -17,7 +17,6 @@ const LIBRARY: &str = "librtf-cppunit.so";
 
 const ADD_HEADER: &str = "add `rtf::report_cases(…)` of `rtf/cppunit.hpp` to its main function";
 
-/// The adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct CppUnit;
 

@@ -29,7 +29,6 @@ const LIST_LIMIT: Duration = Duration::from_secs(120);
 /// The options for the configuration of a multi-configuration generator.
 const CONFIG_OPTIONS: [&str; 2] = ["-C", "--build-config"];
 
-/// The adapter.
 #[derive(Debug, Default)]
 pub struct CTest {
     tests: OnceLock<Vec<CTestCase>>,

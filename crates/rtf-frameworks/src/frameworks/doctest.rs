@@ -45,7 +45,6 @@ const RESERVED: [&str; 16] = [
     "--dt-list-test-cases",
 ];
 
-/// The adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct Doctest;
 

@@ -49,7 +49,6 @@ pub struct Written<'a> {
     pub report: &'a [u8],
     /// The size of the pieces in which the report arrives, at least 1.
     pub piece: usize,
-    /// How the process ended.
     pub end: ExitStatus,
 }
 

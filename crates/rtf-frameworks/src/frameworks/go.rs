@@ -28,7 +28,6 @@ const PATTERN_BYTES: usize = 120 * 1024;
 const RESERVED: [&str; 9] =
     ["-run", "-list", "-skip", "-bench", "-fuzz", "-cpu", "-json", "-c", "-v"];
 
-/// The adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct Go;
 

@@ -55,7 +55,6 @@ const VARIABLES: [&str; 8] = [
     "GTEST_SHARD_INDEX",
 ];
 
-/// The adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct GoogleTest;
 

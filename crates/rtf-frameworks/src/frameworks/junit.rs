@@ -57,7 +57,6 @@ const RESERVED: [&str; 30] = [
     "execute",
 ];
 
-/// The adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct JUnit;
 

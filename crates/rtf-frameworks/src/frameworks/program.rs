@@ -19,7 +19,6 @@ const NOT_EXECUTABLE: i32 = 126;
 /// A shell's exit code for a program that does not exist.
 const NOT_FOUND: i32 = 127;
 
-/// The adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct Program;
 

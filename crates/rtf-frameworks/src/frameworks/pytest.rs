@@ -60,7 +60,6 @@ impl<'a> Selection<'a> {
 /// The exit code without any item. That no case was reported is an error in any case.
 const NO_TESTS: i32 = 5;
 
-/// The adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct Pytest;
 

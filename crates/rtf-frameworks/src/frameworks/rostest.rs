@@ -20,7 +20,6 @@ use results::{NodeResult, Problem, TestResult};
 /// Debian's packages; a ROS distribution has `ros-NAME-rostest`.
 const HINT: &str = "install rostest (Debian: python3-rostest) or source the `setup.bash` of ROS";
 
-/// The adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct Rostest;
 

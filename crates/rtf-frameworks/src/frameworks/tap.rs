@@ -33,7 +33,6 @@ const QUOTED_CHARS: usize = 200;
 /// The part of a line of standard error that is kept: enough for [`QUOTED_CHARS`].
 const ERROR_LINE_BYTES: usize = 4096;
 
-/// The adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct Tap;
 

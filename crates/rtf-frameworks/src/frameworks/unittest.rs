@@ -12,7 +12,6 @@ use super::python;
 
 const RUNNER: &str = "rtf.frameworks.unittest_runner";
 
-/// The adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct Unittest;
 

@@ -52,7 +52,6 @@ impl RunningProgram {
         *self.pid.lock().unwrap_or_else(PoisonError::into_inner) = pid;
     }
 
-    /// Its process id.
     #[must_use]
     pub fn pid(&self) -> Option<Pid> {
         *self.pid.lock().unwrap_or_else(PoisonError::into_inner)

@@ -47,7 +47,6 @@ pub(super) enum Termination {
     Garbage(Garbage),
 }
 
-/// How a process ended.
 #[derive(Debug)]
 pub(super) struct ProcessEnd {
     pub status: ExitStatus,
@@ -198,7 +197,6 @@ fn wait_for(pid: Pid) -> rustix::io::Result<ExitStatus> {
 /// Why a wait has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Wakeup {
-    /// The process has ended.
     Exit,
     /// Something arrived.
     Input,
@@ -206,7 +204,6 @@ enum Wakeup {
     Limit,
 }
 
-/// The state of a running process.
 struct RunningProcess<'a> {
     test: &'a TestRun<'a>,
     pid: Pid,

@@ -162,7 +162,6 @@ fn connect_channel(channel: ReportChannel, number: Option<RawFd>) -> std::io::Re
     Ok(Channel { source, theirs, address })
 }
 
-/// The outputs of a process.
 pub(super) struct Outputs {
     /// Standard output, if it is the report.
     pub report: Option<Source>,

@@ -72,7 +72,6 @@ impl Session {
         state.attachments_dir.as_ref().map(|dir| dir.join(format!("{number}-{name}")))
     }
 
-    /// Sets the directory for copies of attached files.
     pub(crate) fn set_attachments_dir(&self, dir: Option<&str>) {
         self.state().attachments_dir = dir.map(PathBuf::from);
     }

@@ -21,12 +21,10 @@ impl Session {
         self.notify(&Notification::Observed { test, samples });
     }
 
-    /// Reports that a fault was injected while a test runs.
     pub fn fault_injected(&self, fault: FaultInjected) {
         self.notify(&Notification::FaultInjected(fault));
     }
 
-    /// Reports that such a fault was removed.
     pub fn fault_removed(&self, test: TestId, name: String) {
         self.notify(&Notification::FaultRemoved { test, name });
     }

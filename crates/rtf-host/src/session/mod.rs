@@ -40,7 +40,6 @@ pub enum OpenError {
     /// The descriptor is not usable.
     #[error("cannot use the descriptor {fd} of `{CHANNEL_VARIABLE}`")]
     Descriptor {
-        /// The descriptor.
         fd: i32,
         /// The system's reason.
         source: std::io::Error,
@@ -203,7 +202,6 @@ impl Session {
         });
     }
 
-    /// Reports that the fixture collapsed.
     pub fn collapsed(&self, reason: &str) {
         self.notify(&Notification::Collapsed { reason: reason.to_owned() });
     }

@@ -19,7 +19,6 @@ pub struct Inquiry {
     pub choices: Vec<String>,
     /// The answer if no operator answers.
     pub default: Option<String>,
-    /// How long it waits for an answer.
     pub timeout: Duration,
     /// The path of a PNG or JPEG file.
     pub picture: Option<String>,

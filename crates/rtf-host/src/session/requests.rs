@@ -141,7 +141,6 @@ impl Session {
         }
     }
 
-    /// Refuses a request.
     pub(crate) fn refuse(&self, id: Option<u64>, error: RpcError) {
         self.0.writer.send(id, &Reply::<()>::Error(error));
     }

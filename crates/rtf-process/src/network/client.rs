@@ -141,7 +141,6 @@ impl HeldNetwork {
         })
     }
 
-    /// Returns the namespace.
     pub fn network(&self) -> &Network {
         &self.network
     }

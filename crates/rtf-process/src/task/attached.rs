@@ -15,7 +15,6 @@ use crate::probe::{FileVersions, Prober, Probes};
 use crate::spawner::Spawner;
 use crate::tree;
 
-/// An attached fixture.
 #[derive(Debug)]
 pub struct AttachedJob {
     pub host: HostId,

@@ -13,13 +13,10 @@ pub type EventSender = mpsc::Sender<(HostId, ProcessEvent)>;
 
 #[derive(Debug)]
 pub enum ProcessEvent {
-    /// It could not be started.
     SpawnFailed(String),
-    /// It sent a notification.
     Notified(Notification),
     /// It attached a file; the result of copying it into the run's directory.
     Attached(Result<Attachment, String>),
-    /// It replied to a request.
     Replied(u64, Reply<serde_json::Value>),
     ProtocolViolated(String),
     /// Its channel is not read for a while, because too much of its output waits to be
@@ -32,7 +29,6 @@ pub enum ProcessEvent {
     /// A value of a process was read.
     ValueRead {
         name: String,
-        /// Its text.
         value: String,
     },
     /// All `ready` probes have passed.

@@ -17,11 +17,8 @@ use crate::spawner::Spawner;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ProcessStream {
-    /// Standard output.
     Stdout,
-    /// Standard error.
     Stderr,
-    /// The host's channel.
     Channel,
 }
 
@@ -39,7 +36,6 @@ pub trait ProcessOwner: fmt::Debug + Send + Sync {
     fn backlog(&self) -> usize;
 }
 
-/// A process to run.
 #[derive(Debug)]
 pub struct ProcessJob {
     pub host: HostId,
@@ -64,7 +60,6 @@ pub struct ProcessJob {
 pub struct TaskContext {
     /// The thread that starts processes.
     pub spawner: Spawner,
-    /// The run's directory.
     pub run_dir: PathBuf,
     /// The control groups, if possible.
     pub cgroups: Option<Cgroups>,

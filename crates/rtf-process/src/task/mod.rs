@@ -127,7 +127,6 @@ struct ProcessTask {
     trajectories: Vec<String>,
     /// The pictures that were compared, in order.
     pictures: Vec<String>,
-    /// Whether requests wait for a debugger.
     debugger: DebuggerWait,
     /// The requested liveness check.
     check: Option<ProbeSelection>,

@@ -54,7 +54,6 @@ impl SharedHost {
         }
     }
 
-    /// Adds received messages.
     pub(super) fn push(&mut self, messages: Vec<Result<HostMessage, String>>) {
         self.messages.extend(messages);
     }

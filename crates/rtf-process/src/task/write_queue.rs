@@ -3,7 +3,6 @@
 use rustix::net::{Shutdown, shutdown};
 use tokio::net::UnixStream;
 
-/// The bytes to write.
 #[derive(Debug, Default)]
 pub(super) struct WriteQueue {
     bytes: Vec<u8>,

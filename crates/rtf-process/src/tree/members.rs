@@ -69,7 +69,6 @@ impl Tree {
         self.has_leader
     }
 
-    /// Checks whether the leader is alive.
     pub fn leader_lives(&mut self) -> bool {
         self.has_leader &= status_of(self.leader).is_some_and(|status| status.is_alive);
         self.has_leader

@@ -21,7 +21,6 @@ pub struct Context<'a> {
     abandoned: Option<String>,
 }
 
-/// The questions of a suite.
 #[derive(Debug, Default)]
 pub struct Questions {
     /// The number of the last one.
@@ -67,7 +66,6 @@ impl<'a> Context<'a> {
         self.push(Effect::Emit(kind));
     }
 
-    /// The values that fixtures have provided.
     pub fn values(&self) -> &FixtureValues {
         self.values
     }
@@ -113,7 +111,6 @@ impl<'a> Context<'a> {
         self.abandoned.take()
     }
 
-    /// The number of the next question.
     pub fn next_question(&mut self) -> u32 {
         self.questions.last += 1;
         self.questions.last

@@ -46,7 +46,6 @@ impl<'p> FixtureGraph<'p> {
         self.runs.iter().all(|fixture| fixture.stage() == stage)
     }
 
-    /// Whether all are ready for tests.
     pub fn all_ready(&self) -> bool {
         self.runs.iter().all(FixtureRun::is_ready)
     }

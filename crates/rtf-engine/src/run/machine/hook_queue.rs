@@ -43,7 +43,6 @@ impl<'p> HookQueue<'p> {
         }
     }
 
-    /// Triggers the hooks of a verdict.
     pub fn trigger_by_verdict(
         &mut self,
         test: &TestAttempt,

@@ -85,7 +85,6 @@ pub enum FixtureTimer {
     UnfinishedLine,
 }
 
-/// How to start a process.
 #[derive(Clone, Debug)]
 pub struct StartRequest {
     pub what: Program,
@@ -109,7 +108,6 @@ pub(super) fn environment(
     env
 }
 
-/// A program to start.
 #[derive(Clone, Debug)]
 pub enum Program {
     /// A host with a channel.
@@ -126,13 +124,11 @@ pub enum Program {
 /// An action for the task of the suite.
 #[derive(Debug)]
 pub enum Effect {
-    /// Start a process.
     Spawn {
         /// The id of the new process.
         host: HostId,
         /// Its owner.
         source: Source,
-        /// How to start it.
         start: StartRequest,
     },
     /// Assign a further test to a shared host.
@@ -145,7 +141,6 @@ pub enum Effect {
         source: Source,
         /// The number of the request.
         request: u64,
-        /// The request.
         plugin: Box<Plugin>,
     },
     /// Start these hosts ahead, for later `Spawn`s of the same. Hosts that were started
@@ -172,11 +167,9 @@ pub enum Effect {
     ClearDeadline(Deadline),
     /// An operator is asked: the limit and the `slow` limit of the test are paused.
     PauseLimits(TestId),
-    /// They are resumed.
     ResumeLimits(TestId),
     /// Keep these values of fixtures for hooks that the guard runs.
     KeepValues(Box<FixtureValues>),
-    /// Report an event.
     Emit(EventKind),
     /// The suite has finished. The last effect.
     Done,

@@ -84,7 +84,6 @@ impl Evidence {
     }
 }
 
-/// Judges an attempt.
 pub fn judge(evidence: &Evidence, last_phase: Phase) -> Judgement {
     if let Some((cause, reason, phase)) = &evidence.stopped {
         let verdict = match cause {

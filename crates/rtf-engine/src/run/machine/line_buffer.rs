@@ -17,7 +17,6 @@ impl LineBuffer {
         Self(holds_lines.then(Default::default))
     }
 
-    /// Whether incomplete lines are held back.
     pub fn holds_lines(&self) -> bool {
         self.0.is_some()
     }

@@ -42,7 +42,6 @@ pub struct SourceHashes {
 }
 
 impl SourceHashes {
-    /// The hashes of the tests of a suite.
     pub fn of_suite(suite: &SuitePlan) -> Self {
         let mut hashes = Self {
             modules: ModulePath::of_suite(suite),

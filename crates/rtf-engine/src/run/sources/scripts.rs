@@ -33,7 +33,6 @@ impl ModulePath {
         Self { dir: suite.folder.clone(), python, ruby }
     }
 
-    /// The working directory of the suite.
     pub fn dir(&self) -> &Path {
         &self.dir
     }

@@ -34,11 +34,8 @@ const BATCH: usize = 16;
 /// The requests that may end or shorten a suite.
 #[derive(Clone, Debug)]
 pub struct SuiteRequests {
-    /// Requests to end the run.
     pub stops: watch::Receiver<Option<Stop>>,
-    /// Requests that concern a test or a suite.
     pub controls: Controls,
-    /// The limit of failed tests.
     pub fails: FailLimit,
     /// Until when the suite is repeated, as a time of the run.
     pub soak_until: Option<Duration>,

@@ -35,7 +35,6 @@ pub(super) struct Build {
     pub workspace: PathBuf,
 }
 
-/// A test program.
 #[derive(Clone, Debug)]
 pub(super) struct TestBinary {
     /// The target's name, with more if another target has it.
@@ -46,7 +45,6 @@ pub(super) struct TestBinary {
 }
 
 impl TestBinary {
-    /// A command that starts it.
     pub fn command(&self) -> Command {
         let mut command = Command::new(&self.program);
         command.current_dir(&self.dir).envs(&self.variables);

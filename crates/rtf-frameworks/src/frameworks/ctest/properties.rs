@@ -22,7 +22,6 @@ pub struct CTestCase {
     pub command: Vec<String>,
     /// File and line of the `add_test` in a `CMakeLists.txt`.
     pub location: Option<(String, u32)>,
-    /// Where it runs.
     pub working_dir: Option<PathBuf>,
     pub environment: Vec<String>,
     /// `ENVIRONMENT_MODIFICATION`

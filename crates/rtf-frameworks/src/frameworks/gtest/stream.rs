@@ -63,7 +63,6 @@ pub(super) struct Reader {
     skipped: HashSet<String>,
 }
 
-/// The running test.
 #[derive(Debug)]
 struct Running {
     name: String,

@@ -61,7 +61,6 @@ pub(super) struct TestEvents {
 }
 
 impl TestEvents {
-    /// Reads the next bytes.
     pub fn feed(&mut self, bytes: &[u8]) -> Result<Vec<TestEvent>, Garbage> {
         let (mut xml, mut events) = (Vec::new(), Vec::new());
         self.xml.feed(bytes, &mut xml)?;

@@ -8,11 +8,8 @@
 /// Diagnostics of a test line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Diagnostics {
-    /// The error message.
     pub message: Option<String>,
-    /// The expected value.
     pub expected: Option<String>,
-    /// The actual value.
     pub actual: Option<String>,
     /// File and line.
     pub location: Option<(String, u32)>,

@@ -29,7 +29,6 @@ pub enum TapEvent {
 /// A test line with its diagnostics.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReportedPoint {
-    /// The line.
     pub point: TestPoint,
     /// Its position in its stream, from 1.
     pub position: u64,
@@ -80,7 +79,6 @@ struct Yaml {
     lines: Vec<String>,
 }
 
-/// Reads a TAP stream.
 #[derive(Debug)]
 pub struct TapParser {
     streams: Vec<Stream>,

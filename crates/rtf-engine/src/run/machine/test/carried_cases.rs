@@ -91,7 +91,6 @@ impl CarriedCases {
         u32::try_from(self.finished.len()).unwrap_or(u32::MAX)
     }
 
-    /// The names of the finished top-level cases.
     pub(super) fn top_names(&self) -> impl Iterator<Item = &str> {
         self.tops().map(|case| &*case.start.name)
     }

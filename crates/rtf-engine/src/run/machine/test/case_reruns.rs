@@ -59,7 +59,6 @@ impl CaseReruns {
 /// The names of a case, and which attempt of it runs, from 1.
 #[derive(Clone, Debug)]
 pub(super) struct CaseName {
-    /// The name that the host gives it.
     pub host_name: String,
     /// Its name in the record.
     pub name: String,

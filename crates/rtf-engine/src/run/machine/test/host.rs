@@ -15,7 +15,6 @@ use rtf_plan::plan::{SuitePlan, TestPlan};
 /// The number of the first `run-test` on a host's channel.
 const RUN_TEST: u64 = 2;
 
-/// Which host runs a test.
 #[derive(Clone, Copy, Debug)]
 pub enum HostChoice {
     New,
@@ -25,7 +24,6 @@ pub enum HostChoice {
     Assigned(HostId),
 }
 
-/// A request to run a test.
 #[derive(Clone, Copy, Debug)]
 pub struct TestRequest<'a> {
     pub repetition: u32,

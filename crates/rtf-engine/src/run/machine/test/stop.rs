@@ -22,7 +22,6 @@ const MAX_STACK_DUMPS: u32 = 16;
 pub(super) enum StopStep {
     /// Waits for a stack dump; then the test is asked to stop.
     DumpThenAsk,
-    /// Was asked to stop.
     Asked,
     /// Waits for a stack dump; then SIGTERM follows.
     DumpThenTerminate,

@@ -34,7 +34,6 @@ pub(super) enum AttemptState {
     Judged,
 }
 
-/// The result of an attempt.
 #[derive(Debug)]
 pub struct FinishedAttempt {
     pub judgement: Judgement,
