@@ -3,13 +3,12 @@
 mod selection;
 mod types;
 
-use axum::extract::State;
 use rtf_history::answers::FlakyTests;
-use rtf_history::{RunSelection, Store, TestAttributes};
+use rtf_history::{Store, TestAttributes};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-use self::selection::{HistoryProblem, HistoryQuery, Selection, answer};
+use self::selection::{HistoryQuery, HistoryRequest, Selection, answer};
 use self::types::{
     HistoryCampaigns, HistoryChange, HistoryComparison, HistoryMatrix, HistoryRuns, SeriesTrend,
     SlowTests, TestHistories,
@@ -17,7 +16,6 @@ use self::types::{
 use super::details::JsonResult;
 use super::problems::Problems;
 use super::query::{QueryParams, limit};
-use crate::app::App;
 use crate::problem::Problem;
 
 /// Default number of tests per page.
@@ -73,31 +71,26 @@ pub struct Sides {
     b: String,
 }
 
-fn not_found(detail: String, hint: &str) -> HistoryProblem {
-    HistoryProblem(Problem::not_found(detail).hint(hint))
+fn not_found(detail: String, hint: &str) -> Problem {
+    Problem::not_found(detail).hint(hint)
 }
 
 /// The runs of the history, the newest first.
 #[utoipa::path(get, path = "/history/runs", tag = "history", operation_id = "history_runs",
     params(HistoryQuery), responses((status = 200, body = HistoryRuns), Problems))]
-pub async fn runs(
-    State(app): State<App>,
-    QueryParams(query): QueryParams<HistoryQuery>,
-) -> JsonResult {
-    answer(app, query, |store, selection| Ok(HistoryRuns { runs: store.runs(&selection.runs)? }))
-        .await
+pub async fn runs(request: HistoryRequest) -> JsonResult {
+    answer(request, |store, selection| Ok(HistoryRuns { runs: store.runs(&selection.runs)? })).await
 }
 
 /// The verdicts of tests in runs, one letter per result.
 #[utoipa::path(get, path = "/history/matrix", tag = "history", operation_id = "history_matrix",
     params(HistoryQuery, TestPage), responses((status = 200, body = HistoryMatrix), Problems))]
 pub async fn matrix(
-    State(app): State<App>,
-    QueryParams(query): QueryParams<HistoryQuery>,
+    request: HistoryRequest,
     QueryParams(page): QueryParams<TestPage>,
 ) -> JsonResult {
     let limit = limit(page.limit, PAGE)?;
-    answer(app, query, move |store, selection| {
+    answer(request, move |store, selection| {
         let after = page.after.unwrap_or(0) as usize;
         let end = after.saturating_add(limit);
         let lists = |test: &TestAttributes| selection.lists(test);
@@ -111,11 +104,10 @@ pub async fn matrix(
 #[utoipa::path(get, path = "/history/test", tag = "history", operation_id = "history_test",
     params(HistoryQuery, NamedTest), responses((status = 200, body = TestHistories), Problems))]
 pub async fn test(
-    State(app): State<App>,
-    QueryParams(query): QueryParams<HistoryQuery>,
+    request: HistoryRequest,
     QueryParams(named): QueryParams<NamedTest>,
 ) -> JsonResult {
-    answer(app, query, move |store, selection| {
+    answer(request, move |store, selection| {
         let is_meant = |test: &TestAttributes| {
             test.identity.to_string() == named.test && selection.matches(test)
         };
@@ -134,7 +126,7 @@ fn changes(
     store: &Store,
     selection: &Selection,
     is_meant: &dyn Fn(&TestAttributes) -> bool,
-) -> Result<Vec<HistoryChange>, HistoryProblem> {
+) -> Result<Vec<HistoryChange>, Problem> {
     let changes = store.changes(&selection.runs, is_meant)?;
     Ok(changes.into_iter().map(HistoryChange::from).collect())
 }
@@ -143,11 +135,10 @@ fn changes(
 #[utoipa::path(get, path = "/history/trend", tag = "history", operation_id = "history_trend",
     params(HistoryQuery, NamedSeries), responses((status = 200, body = SeriesTrend), Problems))]
 pub async fn trend(
-    State(app): State<App>,
-    QueryParams(query): QueryParams<HistoryQuery>,
+    request: HistoryRequest,
     QueryParams(named): QueryParams<NamedSeries>,
 ) -> JsonResult {
-    answer(app, query, move |store, selection| {
+    answer(request, move |store, selection| {
         let is_named = |name: String| named.test.as_ref().is_none_or(|wanted| *wanted == name);
         let is_meant =
             |test: &TestAttributes| is_named(test.identity.to_string()) && selection.matches(test);
@@ -169,11 +160,8 @@ pub async fn trend(
 /// and cases have no effect.
 #[utoipa::path(get, path = "/history/campaigns", tag = "history", operation_id = "history_campaigns",
     params(HistoryQuery), responses((status = 200, body = HistoryCampaigns), Problems))]
-pub async fn campaigns(
-    State(app): State<App>,
-    QueryParams(query): QueryParams<HistoryQuery>,
-) -> JsonResult {
-    answer(app, query, |store, selection| {
+pub async fn campaigns(request: HistoryRequest) -> JsonResult {
+    answer(request, |store, selection| {
         let rates = store.campaign_rates(&selection.runs, None)?;
         let changes = store.campaign_changes(&selection.runs)?;
         Ok(HistoryCampaigns { rates, changes })
@@ -185,13 +173,9 @@ pub async fn campaigns(
 /// flaky first.
 #[utoipa::path(get, path = "/history/flaky", tag = "history", operation_id = "history_flaky",
     params(HistoryQuery, Most), responses((status = 200, body = FlakyTests), Problems))]
-pub async fn flaky(
-    State(app): State<App>,
-    QueryParams(query): QueryParams<HistoryQuery>,
-    QueryParams(most): QueryParams<Most>,
-) -> JsonResult {
+pub async fn flaky(request: HistoryRequest, QueryParams(most): QueryParams<Most>) -> JsonResult {
     let limit = limit(most.limit, PAGE)?;
-    answer(app, query, move |store, selection| {
+    answer(request, move |store, selection| {
         let mut flaky = store.flaky(&selection.runs, &|test| selection.lists(test))?;
         flaky.tests.truncate(limit);
         Ok(flaky)
@@ -202,13 +186,9 @@ pub async fn flaky(
 /// Tests by median duration, the slowest first.
 #[utoipa::path(get, path = "/history/slow", tag = "history", operation_id = "history_slow",
     params(HistoryQuery, Most), responses((status = 200, body = SlowTests), Problems))]
-pub async fn slow(
-    State(app): State<App>,
-    QueryParams(query): QueryParams<HistoryQuery>,
-    QueryParams(most): QueryParams<Most>,
-) -> JsonResult {
+pub async fn slow(request: HistoryRequest, QueryParams(most): QueryParams<Most>) -> JsonResult {
     let limit = limit(most.limit, PAGE)?;
-    answer(app, query, move |store, selection| {
+    answer(request, move |store, selection| {
         let mut tests = store.slow(&selection.runs, &|test| selection.lists(test))?;
         tests.truncate(limit);
         Ok(SlowTests { tests })
@@ -220,14 +200,11 @@ pub async fn slow(
 #[utoipa::path(get, path = "/history/compare", tag = "history", operation_id = "history_compare",
     params(HistoryQuery, Sides), responses((status = 200, body = HistoryComparison), Problems))]
 pub async fn compare(
-    State(app): State<App>,
-    QueryParams(query): QueryParams<HistoryQuery>,
+    request: HistoryRequest,
     QueryParams(sides): QueryParams<Sides>,
 ) -> JsonResult {
-    answer(app, query, move |store, selection| {
-        let side = |name: &str| -> Result<RunSelection, HistoryProblem> {
-            Ok(store.comparison_side(name, &selection.runs)?)
-        };
+    answer(request, move |store, selection| {
+        let side = |name: &str| store.comparison_side(name, &selection.runs);
         let (a, b) = (side(&sides.a)?, side(&sides.b)?);
         let comparison = store.compare((&a, &b), &|test| selection.lists(test))?;
         for (name, runs) in [(&sides.a, comparison.runs_a), (&sides.b, comparison.runs_b)] {

@@ -2,12 +2,15 @@
 
 use std::sync::Arc;
 
+use axum::extract::FromRequestParts;
+use axum::http::StatusCode;
+use axum::http::request::Parts;
 use rtf_history::{RunSelection, Store, StoreError, TestAttributes};
 use serde::{Deserialize, Deserializer};
 use utoipa::IntoParams;
 
-use axum::http::StatusCode;
-
+use crate::api::details::JsonResult;
+use crate::api::query::QueryParams;
 use crate::app::{App, JsonText, blocking};
 use crate::history_source::{HistorySource, TestCondition};
 use crate::problem::Problem;
@@ -96,30 +99,38 @@ impl Selection {
     }
 }
 
-/// Answers a question in a thread that may block.
+/// A request for an answer about some runs and tests.
+pub struct HistoryRequest {
+    source: Arc<dyn HistorySource>,
+    query: HistoryQuery,
+}
+
+impl FromRequestParts<App> for HistoryRequest {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+        let QueryParams(query) = QueryParams::from_request_parts(parts, app).await?;
+        Ok(Self { source: app.history.clone(), query })
+    }
+}
+
+/// Answers a request in a thread that may block.
 ///
 /// # Errors
-/// The query is wrong, or the history cannot be read.
+/// The query is wrong, the history cannot be read, or `view` has no answer.
 pub async fn answer<T: serde::Serialize>(
-    app: App,
-    query: HistoryQuery,
-    view: impl FnOnce(&Store, &Selection) -> Result<T, HistoryProblem> + Send + 'static,
-) -> Result<JsonText, Problem> {
-    let source: Arc<dyn HistorySource> = app.history.clone();
+    HistoryRequest { source, query }: HistoryRequest,
+    view: impl FnOnce(&Store, &Selection) -> Result<T, Problem> + Send + 'static,
+) -> JsonResult {
     blocking(move || {
         let selection = Selection::of(query, source.as_ref())?;
-        let view = |store: Store| view(&store, &selection);
-        let value = source.open().map_err(HistoryProblem::from).and_then(view);
-        JsonText::of(&value.map_err(|HistoryProblem(problem)| problem)?)
+        let value = view(&source.open()?, &selection)?;
+        JsonText::of(&value)
     })
     .await
 }
 
-/// Why the history has no answer.
-#[derive(Debug)]
-pub struct HistoryProblem(pub Problem);
-
-impl From<StoreError> for HistoryProblem {
+impl From<StoreError> for Problem {
     fn from(error: StoreError) -> Self {
         let status = match error {
             StoreError::Missing { .. } => StatusCode::NOT_FOUND,
@@ -129,10 +140,10 @@ impl From<StoreError> for HistoryProblem {
         if let Some(cause) = std::error::Error::source(&error) {
             detail += &format!(": {cause}");
         }
-        let problem = Problem::new(status, detail);
-        Self(match error.hint() {
+        let problem = Self::new(status, detail);
+        match error.hint() {
             Some(hint) => problem.hint(hint),
             None => problem,
-        })
+        }
     }
 }
