@@ -8,6 +8,7 @@ mod catch2;
 mod cppunit;
 mod ctest;
 mod doctest;
+mod expression;
 pub mod foreign;
 mod go;
 mod gtest;

@@ -3,6 +3,7 @@
 use rtf_model::{ExitStatus, Location, Measurement, MessageKind, Outcome};
 
 use super::super::assertion::{self, RunningCases};
+use super::super::expression::Expression;
 use super::super::sections::Sections;
 use super::{ALL_SKIPPED, tags};
 use crate::case::{CaseResult, ListedCase};
@@ -13,9 +14,6 @@ use crate::xml_stream::{Attributes, XmlEvent};
 
 const ROOT: &str = "Catch2TestRun";
 
-/// The original text of an exception that no check caught.
-const UNKNOWN: &str = "{Unknown expression after the reported line}";
-
 /// The reader of one process.
 #[derive(Debug)]
 pub(super) struct Reader {
@@ -24,7 +22,8 @@ pub(super) struct Reader {
     case: Option<RunningCase>,
     /// Whether the reported case is another one of the same name.
     is_ignored: bool,
-    check: Check,
+    /// The open check, or the location and the messages of another element.
+    check: Expression,
     benchmark: String,
     unskipped: usize,
 }
@@ -48,19 +47,6 @@ struct RunningCase {
     has_died: bool,
 }
 
-/// A check whose element is open, and the messages before it.
-#[derive(Debug, Default)]
-struct Check {
-    kind: String,
-    passed: bool,
-    location: Option<Location>,
-    original: String,
-    expanded: String,
-    exception: Option<String>,
-    is_open: bool,
-    infos: Vec<String>,
-}
-
 impl Reader {
     pub fn new(cases: &[ListedCase]) -> Self {
         Self {
@@ -68,7 +54,7 @@ impl Reader {
             running: RunningCases::new(cases),
             case: None,
             is_ignored: false,
-            check: Check::default(),
+            check: Expression::default(),
             benchmark: String::new(),
             unskipped: 0,
         }
@@ -84,10 +70,8 @@ impl Reader {
                 }
             }
             "Expression" => {
-                self.check.kind = attributes.get("type").to_owned();
-                self.check.passed = attributes.get("success") == "true";
-                self.check.location = location;
-                self.check.is_open = true;
+                let infos = std::mem::take(&mut self.check.infos);
+                self.check = Expression::begin(attributes, location, infos);
             }
             "Failure" | "Warning" | "Skip" | "Exception" | "FatalErrorCondition" => {
                 self.check.location = location;
@@ -110,14 +94,13 @@ impl Reader {
 
     fn end(&mut self, name: &str, text: &str, cases: &mut CaseReporter<'_>) {
         let text = text.trim();
+        if self.check.take_text(name, text) {
+            return;
+        }
         match name {
             "TestCase" => self.end_case(cases),
             "Section" => self.end_section(cases),
-            "Info" => self.check.infos.push(text.to_owned()),
-            "Original" => text.clone_into(&mut self.check.original),
-            "Expanded" => text.clone_into(&mut self.check.expanded),
             "Warning" => self.report(MessageKind::Report, text, cases),
-            "Exception" if self.check.is_open => self.check.exception = Some(text.to_owned()),
             "Exception" => self.report(MessageKind::Error, &format!("exception: {text}"), cases),
             "FatalErrorCondition" => {
                 self.report(MessageKind::Error, text, cases);
@@ -153,7 +136,7 @@ impl Reader {
         let has_tag = |tag: &str| tags.iter().any(|known| known == tag);
         let (may_fail, should_fail) = (has_tag("!mayfail"), has_tag("!shouldfail"));
         start.tags = tags;
-        self.check = Check::default();
+        self.check = Expression::default();
         self.case = Some(RunningCase {
             sections: Sections::start_case(start, cases),
             may_fail,
@@ -212,28 +195,10 @@ impl Reader {
 
     fn end_check(&mut self, cases: &mut CaseReporter<'_>) {
         let check = std::mem::take(&mut self.check);
-        let Check { kind, passed, location, original, expanded, exception, infos, .. } = check;
-        // An exception in a check of exceptions is a failure; otherwise it is an error.
-        let expects = kind.contains("THROW");
-        let text = match &exception {
-            Some(exception) if original == UNKNOWN => format!("exception: {exception}"),
-            Some(exception) => format!("{kind}({original}) threw: {exception}"),
-            None if passed => format!("{kind}({original}): {expanded}"),
-            None => assertion::failed_check(&kind, &original, &expanded),
-        };
-        let message_kind = match (passed, exception) {
-            (true, _) => MessageKind::Check,
-            (false, Some(_)) if !expects => MessageKind::Error,
-            (false, _) => MessageKind::Failure,
-        };
         // A fatal signal is reported by its own element.
-        if self.living().is_none() {
-            return;
+        if self.living().is_some() {
+            self.report_message(check.message(), cases);
         }
-        let text = assertion::with_lines(text, &infos);
-        let mut message = assertion::message(message_kind, &text, location);
-        message.comparison = (!passed).then(|| assertion::comparison(&expanded)).flatten();
-        self.report_message(message, cases);
     }
 
     fn report(&mut self, kind: MessageKind, text: &str, cases: &mut CaseReporter<'_>) {

@@ -3,6 +3,7 @@
 use rtf_model::{ExitStatus, Location, Message, MessageKind, Outcome};
 
 use super::super::assertion::{self, RunningCases};
+use super::super::expression::Expression;
 use super::super::sections::Sections;
 use crate::case::{CaseResult, ListedCase};
 use crate::case_reporter::CaseReporter;
@@ -23,7 +24,10 @@ pub(super) struct Reader {
     case: Option<RunningCase>,
     /// Whether the reported case is another one of the same name.
     is_ignored: bool,
-    check: Check,
+    /// The open check or message.
+    check: Expression,
+    /// Whether the reported exception is a fatal signal.
+    is_crash: bool,
 }
 
 /// The running test case.
@@ -41,21 +45,6 @@ struct RunningCase {
     has_died: bool,
 }
 
-/// A check or message whose element is open.
-#[derive(Debug, Default)]
-struct Check {
-    kind: String,
-    passed: bool,
-    location: Option<Location>,
-    original: String,
-    expanded: String,
-    exception: Option<String>,
-    is_crash: bool,
-    is_open: bool,
-    /// The expected exception, and messages that belong to the check.
-    infos: Vec<String>,
-}
-
 /// The name of a test case.
 pub(super) fn case_name(attributes: &Attributes) -> String {
     match attributes.get("name") {
@@ -71,7 +60,8 @@ impl Reader {
             running: RunningCases::new(cases),
             case: None,
             is_ignored: false,
-            check: Check::default(),
+            check: Expression::default(),
+            is_crash: false,
         }
     }
 
@@ -88,15 +78,9 @@ impl Reader {
                 }
             }
             "Expression" | "Message" => {
-                self.check = Check {
-                    kind: attributes.get("type").to_owned(),
-                    passed: attributes.get("success") == "true",
-                    location,
-                    is_open: true,
-                    ..Check::default()
-                };
+                self.check = Expression::begin(attributes, location, Vec::new());
             }
-            "Exception" => self.check.is_crash = attributes.get("crash") == "true",
+            "Exception" => self.is_crash = attributes.get("crash") == "true",
             "OverallResultsAsserts" => {
                 if let Some(case) = &mut self.case {
                     case.is_success = attributes.get("test_case_success") == "true";
@@ -109,6 +93,9 @@ impl Reader {
 
     fn end(&mut self, name: &str, text: &str, cases: &mut CaseReporter<'_>) {
         let text = text.trim();
+        if self.check.take_text(name, text) {
+            return;
+        }
         match name {
             "TestCase" => self.end_case(cases),
             "SubCase" => {
@@ -116,14 +103,11 @@ impl Reader {
                     case.sections.leave(CaseResult::default(), cases);
                 }
             }
-            "Original" | "Text" => text.clone_into(&mut self.check.original),
-            "Expanded" => text.clone_into(&mut self.check.expanded),
-            "Info" => self.check.infos.push(text.to_owned()),
+            "Text" => text.clone_into(&mut self.check.original),
             "ExpectedException" => self.check.infos.push(format!("expected: {text}")),
             "ExpectedExceptionString" => {
                 self.check.infos.push(format!("expected text: {text}"));
             }
-            "Exception" if self.check.is_open => self.check.exception = Some(text.to_owned()),
             "Exception" => self.exception(text, cases),
             "Expression" => self.end_check(cases),
             "Message" => self.end_message(cases),
@@ -186,30 +170,18 @@ impl Reader {
     }
 
     fn end_check(&mut self, cases: &mut CaseReporter<'_>) {
-        let Check { kind, passed, location, original, expanded, exception, infos, .. } =
-            std::mem::take(&mut self.check);
-        let expects = kind.contains("THROW");
-        let text = match &exception {
-            Some(exception) => format!("{kind}({original}) threw: {exception}"),
-            None if passed => format!("{kind}({original}): {expanded}"),
-            None => assertion::failed_check(&kind, &original, &expanded),
-        };
-        let message_kind = match (passed, &exception) {
-            (true, _) => MessageKind::Check,
-            (false, _) if kind.starts_with("WARN") => MessageKind::Report,
-            (false, Some(_)) if !expects => MessageKind::Error,
-            (false, _) => MessageKind::Failure,
-        };
-        let text = assertion::with_lines(text, &infos);
-        let mut message = assertion::message(message_kind, &text, location);
-        let compares = !passed && !kind.contains("FALSE");
-        message.comparison = compares.then(|| assertion::comparison(&expanded)).flatten();
+        let check = std::mem::take(&mut self.check);
+        let is_warning = check.kind.starts_with("WARN");
+        let mut message = check.message();
+        if is_warning && message.kind != MessageKind::Check {
+            message.kind = MessageKind::Report;
+        }
         self.report_message(message, cases);
     }
 
     /// `MESSAGE`, `FAIL` or `FAIL_CHECK`.
     fn end_message(&mut self, cases: &mut CaseReporter<'_>) {
-        let Check { kind, location, original, infos, .. } = std::mem::take(&mut self.check);
+        let Expression { kind, location, original, infos, .. } = std::mem::take(&mut self.check);
         let message_kind = match kind.as_str() {
             "WARNING" => MessageKind::Report,
             _ => MessageKind::Failure,
@@ -220,7 +192,7 @@ impl Reader {
 
     /// An exception that no check caught, or a fatal signal.
     fn exception(&mut self, text: &str, cases: &mut CaseReporter<'_>) {
-        let is_crash = std::mem::take(&mut self.check.is_crash);
+        let is_crash = std::mem::take(&mut self.is_crash);
         let text = match (is_crash, text) {
             (true, text) => text.to_owned(),
             (false, "") => "exception of an unknown type".to_owned(),

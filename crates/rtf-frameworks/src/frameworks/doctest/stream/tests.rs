@@ -1,4 +1,5 @@
 //! Reports of the corpus in `tests/frameworks/doctest`, as the framework wrote them.
+//! The reader of Catch2 has the same tests: sharing them would not be shorter.
 
 use rtf_model::ExitStatus;
 
