@@ -1,4 +1,5 @@
-// Cases that end the program, or do not end.
+// Cases that end the program, or do not end. As in each framework, complete and in its own terms:
+// not shared with Catch2, whose macros are the same.
 
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>

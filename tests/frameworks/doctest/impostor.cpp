@@ -1,4 +1,5 @@
-// Lists two cases as doctest does, but reports something else; the argument says what.
+// Lists two cases as doctest does, but reports something else; the argument says what. Not shared
+// with Catch2, so that each file shows the whole report of its framework.
 
 #include <cstdio>
 #include <cstdlib>
