@@ -73,112 +73,111 @@ package body RobotTestingFramework.Asserter is
 
    --  Reports the comparison; a failed assertion ends the step.
    procedure Compare
-     (Numbers_Are : Near.Comparison;
-      What        : String;
-      File        : String;
-      Line        : Natural;
-      Assert      : Boolean)
+     (Got, Expected         : Numbers;
+      Tolerance             : Long_Float;
+      What, File            : String;
+      Line                  : Natural;
+      Scalar, Angle, Assert : Boolean := False)
    is
       Holds : Boolean;
    begin
-      Near.Report (Numbers_Are, What, File, Line, Holds);
-      if Assert and then not Holds then
-         raise Assertion_Ended with What;
-      end if;
-   end Compare;
-
-   generic
-      Angle, Assert : Boolean;
-   procedure Compare_Numbers
-     (Got, Expected, Tolerance : Long_Float; What, File : String; Line : Natural);
-
-   procedure Compare_Numbers
-     (Got, Expected, Tolerance : Long_Float; What, File : String; Line : Natural) is
-   begin
-      Compare
-        ((Count          => 1,
-          Expected_Count => 1,
-          Got            => (1 => Got),
-          Expected       => (1 => Expected),
-          Tolerance      => Tolerance,
-          Angle          => Angle,
-          Scalar         => True), What, File, Line, Assert);
-   end Compare_Numbers;
-
-   generic
-      Angle, Assert : Boolean;
-   procedure Compare_Vectors
-     (Got, Expected : Numbers; Tolerance : Long_Float; What, File : String; Line : Natural);
-
-   procedure Compare_Vectors
-     (Got, Expected : Numbers; Tolerance : Long_Float; What, File : String; Line : Natural) is
-   begin
-      Compare
+      Near.Report
         ((Count          => Got'Length,
           Expected_Count => Expected'Length,
           Got            => Near.Numbers (Got),
           Expected       => Near.Numbers (Expected),
           Tolerance      => Tolerance,
           Angle          => Angle,
-          Scalar         => False), What, File, Line, Assert);
-   end Compare_Vectors;
+          Scalar         => Scalar), What, File, Line, Holds);
+      if Assert and then not Holds then
+         raise Assertion_Ended with What;
+      end if;
+   end Compare;
 
-   procedure Check_Numbers is new Compare_Numbers (Angle => False, Assert => False);
-   procedure Require_Numbers is new Compare_Numbers (Angle => False, Assert => True);
-   procedure Check_Angles is new Compare_Numbers (Angle => True, Assert => False);
-   procedure Require_Angles is new Compare_Numbers (Angle => True, Assert => True);
-   procedure Check_Vectors is new Compare_Vectors (Angle => False, Assert => False);
-   procedure Require_Vectors is new Compare_Vectors (Angle => False, Assert => True);
-   procedure Check_Angle_Vectors is new Compare_Vectors (Angle => True, Assert => False);
-   procedure Require_Angle_Vectors is new Compare_Vectors (Angle => True, Assert => True);
+   --  Ada requires each profile again, also in a renaming of a generic instance, which would be
+   --  as long as these bodies.
 
    procedure Check_Near
      (Got, Expected, Tolerance : Long_Float;
       What                     : String;
       File                     : String  := Source.File;
-      Line                     : Natural := Source.Line) renames Check_Numbers;
+      Line                     : Natural := Source.Line) is
+   begin
+      Compare ((1 => Got), (1 => Expected), Tolerance, What, File, Line, Scalar => True);
+   end Check_Near;
+
    procedure Check_Near
      (Got, Expected : Numbers;
       Tolerance     : Long_Float;
       What          : String;
       File          : String  := Source.File;
-      Line          : Natural := Source.Line) renames Check_Vectors;
+      Line          : Natural := Source.Line) is
+   begin
+      Compare (Got, Expected, Tolerance, What, File, Line);
+   end Check_Near;
 
    procedure Require_Near
      (Got, Expected, Tolerance : Long_Float;
       What                     : String;
       File                     : String  := Source.File;
-      Line                     : Natural := Source.Line) renames Require_Numbers;
+      Line                     : Natural := Source.Line) is
+   begin
+      Compare
+        ((1 => Got), (1 => Expected), Tolerance, What, File, Line,
+         Scalar => True, Assert => True);
+   end Require_Near;
+
    procedure Require_Near
      (Got, Expected : Numbers;
       Tolerance     : Long_Float;
       What          : String;
       File          : String  := Source.File;
-      Line          : Natural := Source.Line) renames Require_Vectors;
+      Line          : Natural := Source.Line) is
+   begin
+      Compare (Got, Expected, Tolerance, What, File, Line, Assert => True);
+   end Require_Near;
 
    procedure Check_Angle_Near
      (Got, Expected, Tolerance : Long_Float;
       What                     : String;
       File                     : String  := Source.File;
-      Line                     : Natural := Source.Line) renames Check_Angles;
+      Line                     : Natural := Source.Line) is
+   begin
+      Compare
+        ((1 => Got), (1 => Expected), Tolerance, What, File, Line,
+         Scalar => True, Angle => True);
+   end Check_Angle_Near;
+
    procedure Check_Angle_Near
      (Got, Expected : Numbers;
       Tolerance     : Long_Float;
       What          : String;
       File          : String  := Source.File;
-      Line          : Natural := Source.Line) renames Check_Angle_Vectors;
+      Line          : Natural := Source.Line) is
+   begin
+      Compare (Got, Expected, Tolerance, What, File, Line, Angle => True);
+   end Check_Angle_Near;
 
    procedure Require_Angle_Near
      (Got, Expected, Tolerance : Long_Float;
       What                     : String;
       File                     : String  := Source.File;
-      Line                     : Natural := Source.Line) renames Require_Angles;
+      Line                     : Natural := Source.Line) is
+   begin
+      Compare
+        ((1 => Got), (1 => Expected), Tolerance, What, File, Line,
+         Scalar => True, Angle => True, Assert => True);
+   end Require_Angle_Near;
+
    procedure Require_Angle_Near
      (Got, Expected : Numbers;
       Tolerance     : Long_Float;
       What          : String;
       File          : String  := Source.File;
-      Line          : Natural := Source.Line) renames Require_Angle_Vectors;
+      Line          : Natural := Source.Line) is
+   begin
+      Compare (Got, Expected, Tolerance, What, File, Line, Angle => True, Assert => True);
+   end Require_Angle_Near;
 
    procedure TestFailIf
      (Condition : Boolean;
