@@ -18,6 +18,12 @@ package body RobotTestingFramework.Session is
 
    Poll : constant Duration := 0.01;
 
+   --  The host's table, if its minor version has this feature.
+   function Table_Since
+     (Minor : Interfaces.Unsigned_32; Feature : String) return not null ABI.Host_Access
+   is (if Host.Table.Minor >= Minor then Host.Table
+       else raise Program_Error with "this rtf is too old for " & Feature);
+
    function Told (Tell : not null ABI.Tell_Text) return String is
      (Host.To_Ada (Tell (Host.Table.Context)));
 
@@ -180,6 +186,7 @@ package body RobotTestingFramework.Session is
       end if;
    end Measure;
 
+   --  Not shared with Measure: the records differ, and their copies must outlive the call.
    procedure Sample
      (Name      : String;
       Value     : Long_Float;
@@ -190,7 +197,7 @@ package body RobotTestingFramework.Session is
       File      : String     := Source.File;
       Line      : Natural    := Source.Line)
    is
-      Table        : constant not null ABI.Host_Access := Host.Table;
+      Table        : constant not null ABI.Host_Access := Table_Since (2, "samples");
       Name_Text    : aliased constant String := Name;
       Unit_Text    : aliased constant String := Unit;
       Lowest       : aliased constant Long_Float := Low;
@@ -200,9 +207,7 @@ package body RobotTestingFramework.Session is
       Within       : Interfaces.C.int;
       pragma Unreferenced (Within);
    begin
-      if Table.Minor < 2 then
-         raise Program_Error with "this rtf is too old for samples";
-      elsif Low /= Low or else High /= High then
+      if Low /= Low or else High /= High then
          raise Constraint_Error with "a limit of `" & Name & "` is not a number";
       elsif not Time'Valid then
          raise Constraint_Error with "the time of a sample of `" & Name & "` is not finite";
@@ -229,15 +234,12 @@ package body RobotTestingFramework.Session is
       File      : String     := Source.File;
       Line      : Natural    := Source.Line)
    is
-      Table          : constant not null ABI.Host_Access := Host.Table;
+      Table          : constant not null ABI.Host_Access := Table_Since (4, "trajectories");
       Name_Text      : aliased constant String := Name;
       Reference_Text : aliased constant String := Reference;
       Given_Band     : aliased constant Long_Float := Band;
       Source_Text    : aliased constant String := File & ASCII.NUL;
    begin
-      if Table.Minor < 4 then
-         raise Program_Error with "this rtf is too old for trajectories";
-      end if;
       Table.Trajectory
         (Table.Context,
          (Size      => ABI.Trajectory'Size / System.Storage_Unit,
@@ -286,7 +288,7 @@ package body RobotTestingFramework.Session is
       File    : String   := Source.File;
       Line    : Natural  := Source.Line)
    is
-      Table         : constant not null ABI.Host_Access := Host.Table;
+      Table         : constant not null ABI.Host_Access := Table_Since (4, "monitors");
       Formula_Text  : aliased constant String := Formula;
       Name_Text     : aliased constant String := Name;
       Severity_Text : aliased constant String :=
@@ -297,9 +299,6 @@ package body RobotTestingFramework.Session is
            when Critical => "critical");
       Source_Text   : aliased constant String := File & ASCII.NUL;
    begin
-      if Table.Minor < 4 then
-         raise Program_Error with "this rtf is too old for monitors";
-      end if;
       Table.Monitor
         (Table.Context,
          (Size     => ABI.Monitor'Size / System.Storage_Unit,
