@@ -239,6 +239,7 @@ impl Reader {
 }
 
 impl ReportReader for Reader {
+    // As in the readers of doctest and Boost.Test: a trait for the three would be longer.
     fn report(&mut self, bytes: &[u8], cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
         let (events, result) = self.report.feed(bytes);
         for event in events {
