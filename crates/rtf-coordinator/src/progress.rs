@@ -24,6 +24,7 @@ pub struct Progress {
 
 impl Progress {
     /// Nothing is printed yet.
+    #[expect(clippy::new_without_default, reason = "it depends on the terminal")]
     pub fn new() -> Self {
         let is_terminal = io::stdout().is_terminal();
         let every = if is_terminal { Duration::from_millis(200) } else { Duration::from_secs(10) };

@@ -11,11 +11,11 @@ use rtf_campaign::ledger::MAX_BENCH_RESULTS;
 use rtf_engine::signal::SignalListener;
 use rtf_model::{Episode, EpisodeOutcome};
 use rtf_report::episode_results::EpisodeLine;
-use serde::Serialize;
 use rtf_run::campaign::directory::CampaignDir;
 use rtf_run::error::Failure;
 use rtf_run::spawn_self::{self, exit_code};
 use rtf_run::{VerbResult, exit};
+use serde::Serialize;
 
 use super::assignment::ResultFollower;
 use super::worker;
