@@ -1,7 +1,4 @@
-//! `rtf doctor`: reports missing dependencies of this machine and how to install them.
-//!
-//! [`components`] checks the dependencies of rtf itself, [`fixtures`] those of the
-//! fixture managers that come with it; [`mod@print`] prints the findings.
+//! `rtf doctor`: prints which dependencies are missing; [`rtf_run::doctor`] finds them.
 
 mod print;
 
