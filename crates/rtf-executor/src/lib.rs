@@ -39,7 +39,7 @@ pub const EXIT_CODE: &str = "exit-code";
 
 /// What is done with the tasks and their runs.
 pub struct CollectRequest {
-    /// What is printed and written at the end.
+    /// The output and the reports at the end.
     pub output: OutputRequest,
     /// Where the merged run goes.
     pub finish: Finish,

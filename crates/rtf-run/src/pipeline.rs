@@ -20,7 +20,7 @@ use crate::{history, operator, outputs, plan, preflight, reports, run as executi
 
 /// What is known before the guard forks the runner.
 pub struct Invocation {
-    /// What is printed and written.
+    /// The output and the reports.
     pub output: OutputRequest,
     /// Where the results go.
     pub finish: Finish,
