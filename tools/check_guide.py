@@ -160,7 +160,7 @@ def variables() -> list[str]:
 
 def exit_codes() -> list[str]:
     """Questions for the constants and the numbers of all exit codes."""
-    text = (TOP / "crates" / "rtf" / "src" / "exit.rs").read_text()
+    text = (TOP / "crates" / "rtf-model" / "src" / "exit_code.rs").read_text()
     codes = re.findall(r"pub const (\w+): u8 = (\d+);", text)
     return enough(
         "exit codes", [name for name, _ in codes] + [f"exit code {code}" for _, code in codes], 12
