@@ -1,13 +1,14 @@
 --  SPDX-License-Identifier: Apache-2.0
 --  Fixtures: they run while tests run, for example a simulator or a driver.
 
+--  Each plug-in has a copy of this type, and a process may hold several of them. Inside of the
+--  package, the pragma would have no effect on the elaboration.
+pragma Suppress (Duplicated_Tag_Check);
+
 with GNAT.Source_Info;
 private with RobotTestingFramework.Registry;
 
 package RobotTestingFramework.FixtureManager is
-
-   --  Each plug-in has a copy of this type. A process may hold several of them.
-   pragma Suppress (Duplicated_Tag_Check);
 
    --  An attempt of a test.
    type Test (Length : Natural) is record

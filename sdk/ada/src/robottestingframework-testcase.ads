@@ -11,12 +11,13 @@
 --  is wrong, an error that the bench is; a problem in Setup or TearDown is always
 --  an error, and so is an exception.
 
+--  Each plug-in has a copy of this type, and a process may hold several of them. Inside of the
+--  package, the pragma would have no effect on the elaboration.
+pragma Suppress (Duplicated_Tag_Check);
+
 private with RobotTestingFramework.Registry;
 
 package RobotTestingFramework.TestCase is
-
-   --  Each plug-in has a copy of this type. A process may hold several of them.
-   pragma Suppress (Duplicated_Tag_Check);
 
    type TestCase is abstract tagged private;
    type TestCase_Access is access all TestCase'Class;

@@ -50,6 +50,24 @@ fn a_test_of_the_predecessor() {
     assert_eq!([&places[1..4], &places[4..6]].concat(), lines);
 }
 
+/// Each library has copies of the SDK's types. One process checks several libraries, and runs tests
+/// that share their host.
+#[test]
+fn several_plugins_in_one_process() {
+    let folder = Folder::new();
+    let tests: String = ["predecessor", "endings", "case_steps", "children"]
+        .map(|name| format!("<test isolation='shared'>{}</test>", plugin(name).display()))
+        .concat();
+    folder.file("s.xml", &format!("<suite>{tests}</suite>"));
+    let checked = folder.rtf(&["check", "s.xml"]);
+    assert_eq!(checked.code, Some(0), "{}", checked.stderr);
+    folder.rtf(&["run", "s.xml"]);
+    let record = folder.journal().record;
+    for test in &record.tests {
+        assert_ne!(test.final_verdict(), Verdict::Crashed, "{}", test.plan.name);
+    }
+}
+
 /// Each ending of one plug-in: the verdict, and what is told before the tear-down.
 #[test]
 fn endings() {
