@@ -64,11 +64,13 @@ impl RunningProgram {
 
     /// Reads the outputs of a stopped program until they are closed. Its report stays open so long.
     fn keep_reading(&self, outputs: Vec<(OutputStream, File)>, report: Option<Source>) {
-        let rest = std::thread::spawn(move || {
+        let read = move || {
             streams::pass_on(outputs);
             drop(report);
-        });
-        *self.rest.lock().unwrap_or_else(PoisonError::into_inner) = Some(rest);
+        };
+        // Without a thread, the outputs are closed.
+        let rest = std::thread::Builder::new().spawn(read).ok();
+        *self.rest.lock().unwrap_or_else(PoisonError::into_inner) = rest;
     }
 
     /// Waits until nothing that a stopped program has started has its outputs.
