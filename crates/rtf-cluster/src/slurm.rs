@@ -12,8 +12,7 @@ use super::{
     stored_job, write,
 };
 
-/// Calls a program with the number and the attempt of the task, see
-/// `--array-task`.
+/// Calls a program with the number and the attempt of the task, in the option `--array-task`.
 const TASK: &str = r#"#!/bin/sh
 # Arguments: the directory of the submission, a program, its verb, and further arguments.
 dir=$1 program=$2 verb=$3

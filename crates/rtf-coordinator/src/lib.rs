@@ -5,7 +5,7 @@
 //! - [`pool`]: the workers, as processes on this machine or tasks of a cluster.
 //! - [`stream_pool`]: workers that get episodes while they run, for searches.
 //! - [`worker`]: the command of a worker; [`task`]: a worker as a task of a cluster.
-//! - [`progress`], [`summary`]: its output.
+//! - [`progress`], [`summary`]: the text on standard output.
 
 mod assignment;
 pub mod coordinator;

@@ -103,6 +103,6 @@ fn finish(request: &CollectRequest, dir: &RunDir) -> Result<(), Failure> {
     let stored = journal::read(&dir.journal()).map_err(Failure::internal)?;
     let record = &stored.record;
     outputs::complete(&request.output, &dir.journal(), record);
-    request.finish.finish(record);
+    request.targets.finish(record);
     Ok(())
 }

@@ -26,7 +26,7 @@ use std::time::Duration;
 use rtf_cluster::{Cluster, ClusterError, Job, JobArray};
 use rtf_plan::plan::Plan;
 use rtf_run::error::Failure;
-use rtf_run::finish::Finish;
+use rtf_run::finish::ResultTargets;
 use rtf_run::request::{OutputRequest, TestsRequest};
 use rtf_run::{VerbResult, plan, reports, terminal};
 
@@ -42,7 +42,7 @@ pub struct CollectRequest {
     /// The output and the reports at the end.
     pub output: OutputRequest,
     /// Where the merged run goes.
-    pub finish: Finish,
+    pub targets: ResultTargets,
     /// A further symbolic link to the directory of the merged run.
     pub symlink: Option<PathBuf>,
     /// How long the tasks may take to end after a signal.

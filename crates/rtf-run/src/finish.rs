@@ -7,14 +7,14 @@ use crate::history::{self, HistoryTarget};
 
 /// Where the results go.
 #[derive(Default)]
-pub struct Finish {
+pub struct ResultTargets {
     /// Where the run is imported.
     pub history: Option<HistoryTarget>,
     /// Which collectors get its trace.
     pub collectors: Vec<Collector>,
 }
 
-impl Finish {
+impl ResultTargets {
     /// Imports and sends the results.
     pub fn finish(&self, record: &Record) {
         if let Some(history) = &self.history {

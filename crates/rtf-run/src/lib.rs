@@ -6,14 +6,15 @@
 //!               └► problems, printed
 //! ```
 //!
-//! [`pipeline`] is the whole way. [`request`] is plain data; the binary makes it from arguments, `rtf.toml` and past runs. Values go
-//! from left to right only: a stage reads the results of earlier stages and calls no earlier stage.
-//! [`guarded`] forks before the request is resolved, so that the guard stays small; the stages
-//! from there on are those of the runner process.
+//! [`pipeline`] is the whole way. [`request`] is plain data; the binary makes it from arguments,
+//! `rtf.toml` and past runs. Values go from left to right only: a stage reads the results of earlier
+//! stages and calls no earlier stage. [`guarded`] forks before the request is resolved, so that the
+//! guard stays small; the stages from there on are those of the runner process.
 //!
 //! What they share: [`error`] and [`exit`] end the program; [`terminal`] and [`diagnostics`] print;
 //! [`history`] imports and reads results; [`campaign`] reads the files and directories of
-//! campaigns.
+//! campaigns. Around runs: [`merge`], [`reruns`] that a browser requests, [`watch`] decides when a
+//! changed file starts the next one, [`doctor`] checks the machine.
 
 pub mod campaign;
 pub mod collector;

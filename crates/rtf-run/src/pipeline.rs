@@ -12,7 +12,7 @@ use crate::VerbResult;
 use crate::control::ControlChannels;
 use crate::debug::DebugRequest;
 use crate::error::Failure;
-use crate::finish::Finish;
+use crate::finish::ResultTargets;
 use crate::guarded::{self, Supervision};
 use crate::plan::Planned;
 use crate::request::{OutputRequest, RunRequest};
@@ -23,7 +23,7 @@ pub struct Invocation {
     /// The output and the reports.
     pub output: OutputRequest,
     /// Where the results go.
-    pub finish: Finish,
+    pub targets: ResultTargets,
     /// The guard ends the run when this closes.
     pub lifeline: Option<OwnedFd>,
     /// How long the runner may not answer before the guard kills it.
@@ -37,7 +37,7 @@ pub fn run(
     resolve: impl FnOnce() -> Result<RunRequest, Failure>,
     show: Option<fn(&Planned) -> VerbResult>,
 ) -> VerbResult {
-    let Invocation { output, finish, lifeline, patience } = invocation;
+    let Invocation { output, targets, lifeline, patience } = invocation;
     let supervision = Supervision { lifeline, patience, keeps_journal: true };
     let run = |guard| {
         let mut request = resolve()?;
@@ -62,11 +62,11 @@ pub fn run(
         if let Some(stream) = request.tests.episode_stream.take() {
             stream.start(prepared.control.clone()).map_err(Failure::internal)?;
         }
-        execution::run(&request, &planned, prepared, guard, &finish)
+        execution::run(&request, &planned, prepared, guard, &targets)
     };
     let complete = |journal: &Path, record: &Record| {
         outputs::complete(&output, journal, record);
-        finish.finish(record);
+        targets.finish(record);
     };
     guarded::run(supervision, run, complete)
 }

@@ -20,7 +20,7 @@ use crate::VerbResult;
 use crate::control::ControlChannels;
 use crate::debug::DebugRequest;
 use crate::error::Failure;
-use crate::finish::Finish;
+use crate::finish::ResultTargets;
 use crate::plan::Planned;
 use crate::preflight::Prepared;
 use crate::request::RunRequest;
@@ -35,7 +35,7 @@ pub fn run(
     planned: &Planned,
     prepared: Prepared,
     guard: Link,
-    finish: &Finish,
+    targets: &ResultTargets,
 ) -> VerbResult {
     let Prepared { dir, reporters, stdout, server, control } = prepared;
     let fanout = Fanout::start(reporters).map_err(Failure::internal)?;
@@ -53,7 +53,7 @@ pub fn run(
     let finished =
         runtime.block_on(finish_reports(fanout, &stdout, &dir.path)).map_err(Failure::internal)?;
     guard.finish();
-    finish.finish(&finished.record);
+    targets.finish(&finished.record);
     let code = ended.map(|killed_by| exit_code(killed_by, finished));
     let linger = request.web.as_ref().and_then(|web| web.linger);
     if let (Some(server), Some(time)) = (&server, linger)

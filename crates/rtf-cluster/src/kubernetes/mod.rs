@@ -19,9 +19,8 @@ const MANIFEST: &str = "job.json";
 /// The numbers of the tasks, one a line: that of an index is in the line with its number.
 const TASKS: &str = "tasks";
 
-/// Calls a program with the number of the task and a new attempt, see
-/// `--array-task`. An attempt is a directory that did not exist before:
-/// Kubernetes does not number the pods of an index.
+/// Calls a program with the number of the task and a new attempt, in the option `--array-task`. An
+/// attempt is a directory that did not exist before: Kubernetes does not number the pods of an index.
 const TASK: &str = r#"# Arguments: the directory of the submission, a program, its verb, and further arguments.
 dir=$1 program=$2 verb=$3
 shift 3

@@ -17,7 +17,7 @@ pub use cluster::ClusterPool;
 pub use local::LocalPool;
 
 /// The workers of a campaign.
-#[expect(async_fn_in_trait, reason = "one thread coordinates")]
+#[expect(async_fn_in_trait, reason = "a single thread runs all pools")]
 pub trait Pool {
     /// How often [`Pool::collect`] should be called.
     const POLL: Duration;

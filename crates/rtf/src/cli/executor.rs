@@ -98,13 +98,3 @@ pub enum ExecutorOption {
     /// A Kubernetes cluster
     Kubernetes,
 }
-
-impl std::fmt::Display for ExecutorOption {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Local => "local",
-            Self::Slurm => "slurm",
-            Self::Kubernetes => "kubernetes",
-        })
-    }
-}

@@ -24,7 +24,7 @@ pub fn run(mut args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
     match &args.executor.array_task {
         Some(task) => cluster::fill_task(task, &mut args.run, &options)?,
         None if options.executor != Executor::Local => {
-            cluster::refuse_local_options(&args)?;
+            cluster::refuse_local_options(&args, options.executor)?;
             let shard = |count| Some(Shard { index: 1, count, by: ShardBy::Hash });
             let tests = |count| request::tests_in_shard(&args.run.input, shard(count));
             return rtf_executor::run(&options, &cluster::collect(&args.run)?, tests);
@@ -36,7 +36,7 @@ pub fn run(mut args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
     let lifeline = args.end_with_stdin.then(|| std::io::stdin().as_fd().try_clone_to_owned());
     let invocation = Invocation {
         output: OutputRequest { progress: debug.is_none(), ..request::output(&args) },
-        finish: request::finish(&args, debug.is_some())?,
+        targets: request::targets(&args, debug.is_some())?,
         lifeline: lifeline.transpose().map_err(Failure::internal)?,
         patience: args.shutdown_timeout,
     };

@@ -41,7 +41,7 @@ pub fn cluster(args: &ClusterArgs) -> Result<ClusterOptions, Failure> {
 pub fn collect(args: &RunArgs) -> Result<CollectRequest, Failure> {
     Ok(CollectRequest {
         output: super::output(args),
-        finish: super::finish(args, false)?,
+        targets: super::targets(args, false)?,
         symlink: args.symlink.clone(),
         shutdown_timeout: args.shutdown_timeout,
     })
@@ -93,7 +93,7 @@ pub fn fill_task(
 }
 
 /// Refuses options that need the tests on this machine.
-pub fn refuse_local_options(args: &RunVerbArgs) -> Result<(), Failure> {
+pub fn refuse_local_options(args: &RunVerbArgs, executor: Executor) -> Result<(), Failure> {
     let RunVerbArgs { run, debug, .. } = args;
     let refused = [
         ("--rerun", !run.input.select.rerun.is_empty()),
@@ -108,7 +108,6 @@ pub fn refuse_local_options(args: &RunVerbArgs) -> Result<(), Failure> {
     ];
     match refused.iter().find(|(_, is_given)| *is_given) {
         Some((option, _)) => {
-            let executor = args.executor.cluster.executor;
             let error = format!("`{option}` cannot be combined with `--executor {executor}`");
             Err(Failure::input(error))
         }

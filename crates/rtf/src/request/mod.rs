@@ -13,7 +13,7 @@ use rtf_run::campaign::{self, EpisodeStream};
 use rtf_run::collector::Collector;
 use rtf_run::debug::DebugRequest;
 use rtf_run::error::Failure;
-use rtf_run::finish::Finish;
+use rtf_run::finish::ResultTargets;
 use rtf_run::formats::{self, OutputFormat, ReportFormat, ReportTarget};
 use rtf_run::history::{self, HistoryTarget};
 use rtf_run::operator::Attendance;
@@ -145,13 +145,13 @@ fn report_file((format, target): &(ReportFormat, ReportTarget)) -> Option<(Repor
 }
 
 /// Where the results of a run go. A session with a debugger says nothing about the test.
-pub fn finish(args: &RunArgs, is_debugged: bool) -> Result<Finish, Failure> {
+pub fn targets(args: &RunArgs, is_debugged: bool) -> Result<ResultTargets, Failure> {
     let addresses = args.reports.iter().filter_map(|(_, target)| match target {
         ReportTarget::File(_) => None,
         ReportTarget::Collector(address) => Some(address),
     });
     let no_history = args.no_history || is_debugged;
-    Ok(Finish {
+    Ok(ResultTargets {
         history: target(no_history, &args.input.history, &args.input.results)?,
         collectors: addresses
             .map(|address| Collector::resolve(address))

@@ -22,7 +22,7 @@ use rtf_report::predecessor::{self, ResultList, ResultListOptions};
 use rtf_report::run_dir::JOURNAL;
 use rtf_report::{ReportError, ReportFile, local_time};
 use rtf_run::error::Failure;
-use rtf_run::finish::Finish;
+use rtf_run::finish::ResultTargets;
 use rtf_run::formats::ReportFormat;
 use rtf_run::guarded::{self, Supervision};
 use rtf_run::operator::Attendance;
@@ -107,7 +107,7 @@ fn run(args: &Args) -> VerbResult {
             preflight::prepare(&request, report.into_iter().collect(), |_, stdout, _| {
                 Ok(vec![Box::new(ResultList::over(stdout, console_options(args)))])
             })?;
-        run::run(&request, &planned, prepared, guard, &Finish::default())
+        run::run(&request, &planned, prepared, guard, &ResultTargets::default())
     };
     let outcome = guarded::run(supervision, run, |_, record| complete(args, &results.path, record));
     // The guard needs the journal until the runner has ended.
