@@ -84,7 +84,7 @@ class Run:
         while not any(condition(event) for event in self.events()):
             if self.process.poll() is not None or time.monotonic() > deadline:
                 self.wait()
-                raise SystemExit("the run ended or hangs before the expected event")
+                raise AssertionError("the run ended or hangs before the expected event")
             time.sleep(0.02)
 
     def events(self, kind: str = "") -> Iterator[Event]:
@@ -129,12 +129,12 @@ def is_a(event: Event, kind: str) -> bool:
 
 
 def expect(what: str, got: object, expected: object) -> None:
-    """Exits with a message if a value is not as expected."""
+    """Fails with a message if a value is not as expected."""
     if got != expected:
-        raise SystemExit(f"{what}: got {got}, expected {expected}")
+        raise AssertionError(f"{what}: got {got}, expected {expected}")
     print(f"ok: {what}: {got}", flush=True)
 
 
 def expect_in(text: str, message: str) -> None:
-    """Exits with a message if a text is not part of another."""
+    """Fails with a message if a text is not part of another."""
     expect(f"`{text}` in {message!r}", text in message, True)

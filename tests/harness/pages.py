@@ -16,9 +16,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from checkout import ROOT
 from run import Run, expect
-
-TOP = Path(__file__).resolve().parent.parent
 
 _FILE = re.compile(
     r"^```\w+\n((?://|--|#|<!--) (\S+\.\w+)(?:: [^\n]*)?(?: -->)?\n.*?)^```$", re.M | re.S
@@ -74,13 +73,13 @@ def write_files(page: Path, directory: Path) -> list[Path]:
     shown = set()
     for text, name in _FILE.findall(page.read_text()):
         if name in shown:
-            raise SystemExit(f"{page}: {name} is shown twice")
+            raise AssertionError(f"{page}: {name} is shown twice")
         shown.add(name)
         (directory / name).write_text(text)
         if "<suite " in text:
             suites.append(directory / name)
     if not suites:
-        raise SystemExit(f"{page}: no block is a suite: was the page's format changed?")
+        raise AssertionError(f"{page}: no block is a suite: was the page's format changed?")
     return suites
 
 
@@ -89,7 +88,7 @@ def run_fixture_page(rtf: str, fixture: str, directory: Path, lesson: Path | Non
 
     Tests may fail, because pages show failures, too; fixtures must not collapse.
     """
-    page = TOP / "docs" / "fixtures" / f"{fixture}.md"
+    page = ROOT / "docs" / "fixtures" / f"{fixture}.md"
     if lesson is None:
         directory.mkdir()
     else:
@@ -97,7 +96,7 @@ def run_fixture_page(rtf: str, fixture: str, directory: Path, lesson: Path | Non
     path = f"{Path(rtf).parent}:{os.environ['PATH']}"
     for commands in _COMMANDS.findall(page.read_text()):
         script = ["bash", "-e", "-o", "pipefail", "-c", commands]
-        ran = subprocess.run(script, cwd=TOP, env={**os.environ, "PATH": path}, check=False)
+        ran = subprocess.run(script, cwd=ROOT, env={**os.environ, "PATH": path}, check=False)
         expect(f"{page.name}: exit code of `{commands.strip()}`", ran.returncode, 0)
     for suite in write_files(page, directory):
         run = Run(rtf, str(suite), directory / f"{suite.stem}.run")

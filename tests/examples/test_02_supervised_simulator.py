@@ -1,23 +1,17 @@
-#!/usr/bin/env python3
-"""Runs example 02 as a user does, a second time while the runner is killed, and with a monitor.
-
-    check_example_02.py RTF SUITE
-
-The first run shows a collapse, a rerun and a parked arm. In the second, the runner gets a
-SIGKILL while the arm moves, and the guard must park the arm. In the third, a monitor stops a test
-during its motion.
-"""
+"""Runs example 02 as a user does, a second time while the runner is killed, and with a monitor."""
 
 from __future__ import annotations
 
 import shutil
-import sys
-import tempfile
 from pathlib import Path
 
+import pytest
+from checkout import ROOT
 from processes import children, kill, running
 from run import Event, Run, expect, expect_in, is_a
 
+pytestmark = pytest.mark.venv("demo")
+SUITE = ROOT / "examples/02-supervised-simulator/supervised.xml"
 RUNNER_DIED = 5
 SWEEP_SECS = 6
 """How long the first test moves the arm, unless it is stopped."""
@@ -41,19 +35,9 @@ WATCHED = f"""
 </suite>"""
 
 
-def main() -> int:
-    """Runs both; exits at the first difference."""
-    rtf, suite = (str(Path(argument).resolve()) for argument in sys.argv[1:])
-    with tempfile.TemporaryDirectory() as directory:
-        undisturbed(rtf, suite, Path(directory) / "undisturbed")
-        runner_killed(rtf, suite, Path(directory) / "killed")
-        monitored(rtf, Path(suite), Path(directory))
-    return 0
-
-
-def undisturbed(rtf: str, suite: str, directory: Path) -> None:
+def test_a_collapse_a_rerun_and_a_parked_arm(rtf: str, tmp_path: Path) -> None:
     """The arm dies once, the test is rerun, and the arm is parked at the end."""
-    run = Run(rtf, suite, directory)
+    run = Run(rtf, str(SUITE), tmp_path / "results")
     expect("exit code", run.wait(), 0)
     expect("attempts", run.attempts(), ["collapsed", "passed", "passed"])
     expect("hooks", triggers(run), ["collapse", "end"])
@@ -61,9 +45,9 @@ def undisturbed(rtf: str, suite: str, directory: Path) -> None:
     expect("arms left", arms(), [])
 
 
-def runner_killed(rtf: str, suite: str, directory: Path) -> None:
+def test_the_guard_parks_the_arm_of_a_killed_runner(rtf: str, tmp_path: Path) -> None:
     """The guard parks the arm, and no process is left."""
-    run = Run(rtf, suite, directory)
+    run = Run(rtf, str(SUITE), tmp_path / "results")
     try:
         run.wait_for(is_rerun)
         run.wait_for(lambda event: is_a(event, "test-phase") and runs_again(run))
@@ -79,17 +63,17 @@ def runner_killed(rtf: str, suite: str, directory: Path) -> None:
     expect("arms left", arms(), [])
 
 
-def monitored(rtf: str, suite: Path, directory: Path) -> None:
+def test_a_monitor_stops_the_motion(rtf: str, tmp_path: Path) -> None:
     """A monitor with `stop` interrupts the motion, and the hook parks the arm at once."""
-    lessons = suite.parent.parent
-    for lesson in ("01-simulated-arm", suite.parent.name):
-        shutil.copytree(lessons / lesson, directory / "lessons" / lesson)
-    copy = directory / "lessons" / suite.parent.name
+    lessons = SUITE.parent.parent
+    for lesson in ("01-simulated-arm", SUITE.parent.name):
+        shutil.copytree(lessons / lesson, tmp_path / "lessons" / lesson)
+    copy = tmp_path / "lessons" / SUITE.parent.name
     (copy / "read_shoulder.py").write_text(READER)
-    change(copy / suite.name, "</suite>", WATCHED)
+    change(copy / SUITE.name, "</suite>", WATCHED)
     # On a busy machine, the cable would break before the motion.
     change(copy / "loose_arm.py", "DIES_AFTER_SECS = 4.0", "DIES_AFTER_SECS = 1e4")
-    run = Run(rtf, f"{copy / suite.name}::SweepTest", directory / "monitored")
+    run = Run(rtf, f"{copy / SUITE.name}::SweepTest", tmp_path / "monitored")
     expect("exit code", run.wait(), 1)
     expect("verdicts", run.attempts(), ["failed"])
     expect("cause", [event["cause"] for event in run.events("test-stopping")], ["finding"])
@@ -142,7 +126,3 @@ def hook_output(run: Run) -> str:
 def arms() -> list[int]:
     """The running simulators of this lesson."""
     return running("loose_arm.py")
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,6 +1,6 @@
-"""A network in which a check can count the packets that would leave the machine.
+"""A network in which a test can count the packets that would leave the machine.
 
-The check runs in a network namespace with a second interface for the default route. No
+The test runs in a network namespace with a second interface for the default route. No
 process listens there, and the kernel counts the packets.
 """
 
@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import os
 import socket
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -34,16 +33,20 @@ exec "$@"
 """
 
 
-def move_in() -> None:
-    """Restarts this program in such a network, with its arguments."""
-    if os.environ.pop(INSIDE, "") == str(os.getpid()):
+def is_inside() -> bool:
+    """Whether this process is in such a network; the first answer also proves that it counts."""
+    if INSIDE not in os.environ:
+        return False
+    if not os.environ[INSIDE]:
+        os.environ[INSIDE] = "checked"
         stray_packet_is_seen()
-        return
-    # unshare and the shell execute this program in the same process.
-    os.environ[INSIDE] = str(os.getpid())
+    return True
+
+
+def command(inner: list[str]) -> list[str]:
+    """A command that runs another in such a network."""
     unshare = ["unshare", "--net", *(["--map-root-user"] if os.geteuid() else [])]
-    command = [*unshare, "sh", "-c", SETTLE, "sh", sys.executable, *sys.argv]
-    os.execvp(command[0], command)
+    return [*unshare, "env", f"{INSIDE}=", "sh", "-c", SETTLE, "sh", *inner]
 
 
 def packets() -> int:
@@ -52,7 +55,7 @@ def packets() -> int:
         interface, _, numbers = line.partition(":")
         if interface.strip() == OUTSIDE:
             return int(numbers.split()[9])
-    raise SystemExit(f"there is no interface {OUTSIDE}")
+    raise AssertionError(f"there is no interface {OUTSIDE}")
 
 
 def stray_packet_is_seen() -> None:

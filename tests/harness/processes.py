@@ -8,9 +8,8 @@ import signal
 from collections.abc import Callable
 from pathlib import Path
 
-# The processes that this one starts inherit it.
-os.environ["RTF_CHECK"] = str(os.getpid())
-MARK = f"RTF_CHECK={os.getpid()}"
+MARK = "RTF_CHECK"
+"""A variable with the name of the test, which all that it starts inherits; tests/conftest.py."""
 
 
 def select(wanted: Callable[[Path, list[str], list[str]], bool]) -> list[int]:
@@ -36,10 +35,11 @@ def lines(file: Path) -> list[str]:
 
 
 def running(program: str) -> list[int]:
-    """The processes whose program or script has this name, which this check has started."""
+    """The processes whose program or script has this name, which this test has started."""
+    mark = f"{MARK}={os.environ[MARK]}"
 
     def is_ours(_: Path, words: list[str], environment: list[str]) -> bool:
-        return program in {Path(word).name for word in words[:2]} and MARK in environment
+        return program in {Path(word).name for word in words[:2]} and mark in environment
 
     return select(is_ours)
 

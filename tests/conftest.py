@@ -1,0 +1,108 @@
+"""What the tests that run the program from outside share: a built rtf and an environment.
+
+A test gets the path of a program as the fixture `rtf` (optimised) or `debug_rtf`, which are built
+first, and its environment from the markers in pytest.ini.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import subprocess
+import sys
+import uuid
+from collections.abc import Iterator
+from pathlib import Path
+
+import network
+import pytest
+from checkout import BUILD, ROOT, TARGET, exports, venv
+
+# Tests as users write them, which rtf runs, and workspaces that tests copy.
+collect_ignore = [
+    "colcon/workspace",
+    "ctest/project",
+    "frameworks/pytest",
+    "frameworks/pytest_projects/projects",
+    "frameworks/unittest",
+    "import/workspace",
+    "predecessor/project",
+]
+
+BUILDS = {
+    "release": ["tools/build.sh"],
+    "debug": ["cargo", "build", "--quiet", "--workspace", "--locked"],
+}
+RUN = uuid.uuid4().hex
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Adds the options of this directory."""
+    parser.addoption("--no-build", action="store_true", help="take rtf as it is in target/")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Starts what takes longest before the others, so that no processor idles at the end."""
+    items.sort(key=lambda item: item.get_closest_marker("first") is None)
+
+
+@pytest.fixture(scope="session")
+def rtf(request: pytest.FixtureRequest) -> str:
+    """The optimised program."""
+    return built(request.config, "release")
+
+
+@pytest.fixture(scope="session")
+def debug_rtf(request: pytest.FixtureRequest) -> str:
+    """The program as `cargo build` makes it."""
+    return built(request.config, "debug")
+
+
+def built(config: pytest.Config, profile: str) -> str:
+    """Builds a profile once in each run of the tests, whichever process needs it first."""
+    program = TARGET / profile / "rtf"
+    if not config.getoption("no_build"):
+        run = getattr(config, "workerinput", {}).get("testrunuid", RUN)
+        BUILD.mkdir(exist_ok=True)
+        with (BUILD / f"test-{profile}.lock").open("a+") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            lock.seek(0)
+            if lock.read() != run:
+                subprocess.run(BUILDS[profile], cwd=ROOT, check=True)
+                lock.truncate(0)
+                lock.write(run)
+    if not program.is_file():
+        pytest.fail(f"{program} is missing: leave `--no-build` out")
+    return str(program)
+
+
+@pytest.fixture(autouse=True)
+def _environment(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The environment that the markers of a test ask for."""
+    for marker in request.node.iter_markers("venv"):
+        monkeypatch.setenv("PATH", f"{venv(*marker.args)}:{os.environ['PATH']}")
+    for marker in request.node.iter_markers("middleware"):
+        for name, value in exports("tools/middleware.sh", *marker.args).items():
+            rest = os.environ["PATH"] if name == "PATH" else ""
+            monkeypatch.setenv(name, value + rest)
+    # The processes of a test inherit it, see harness/processes.py.
+    monkeypatch.setenv("RTF_CHECK", uuid.uuid4().hex)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
+    """Runs a test that counts packets in a process with a network of its own."""
+    if pyfuncitem.get_closest_marker("outside_network") is None or network.is_inside():
+        return None
+    options = ["-p", "no:xdist", "--no-build", "-s", "-q"]
+    pytest_here = [sys.executable, "-m", "pytest", *options, pyfuncitem.nodeid]
+    root = pyfuncitem.config.rootpath
+    ran = subprocess.run(network.command(pytest_here), cwd=root, check=False)
+    assert ran.returncode == 0, "the test failed in a network of its own"
+    return True
+
+
+@pytest.fixture
+def results(tmp_path: Path) -> Iterator[Path]:
+    """A directory for the results of runs, with a short path: sockets are in it."""
+    yield tmp_path
