@@ -11,8 +11,6 @@ import os
 import subprocess
 import sys
 import uuid
-from collections.abc import Iterator
-from pathlib import Path
 
 import network
 import pytest
@@ -41,9 +39,17 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--no-build", action="store_true", help="take rtf as it is in target/")
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Starts what takes longest before the others, so that no processor idles at the end."""
+    """Starts what takes longest before the others, so that no processor idles at the end.
+
+    Tests that share something of their module run in one process, which makes it once.
+    """
     items.sort(key=lambda item: item.get_closest_marker("first") is None)
+    for item in (each for each in items if isinstance(each, pytest.Function)):
+        definitions = item._fixtureinfo.name2fixturedefs.values()
+        if any(each[-1].scope == "module" for each in definitions):
+            item.add_marker(pytest.mark.xdist_group(item.nodeid.partition("::")[0]))
 
 
 @pytest.fixture(scope="session")
@@ -91,18 +97,12 @@ def _environment(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
-    """Runs a test that counts packets in a process with a network of its own."""
+    """Runs a test that counts packets in a process with a separate network."""
     if pyfuncitem.get_closest_marker("outside_network") is None or network.is_inside():
         return None
     options = ["-p", "no:xdist", "--no-build", "-s", "-q"]
     pytest_here = [sys.executable, "-m", "pytest", *options, pyfuncitem.nodeid]
     root = pyfuncitem.config.rootpath
     ran = subprocess.run(network.command(pytest_here), cwd=root, check=False)
-    assert ran.returncode == 0, "the test failed in a network of its own"
+    assert ran.returncode == 0, "the test failed in its network"
     return True
-
-
-@pytest.fixture
-def results(tmp_path: Path) -> Iterator[Path]:
-    """A directory for the results of runs, with a short path: sockets are in it."""
-    yield tmp_path

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import os
+import shlex
 import subprocess
 from collections.abc import Mapping
 from pathlib import Path
@@ -20,7 +21,9 @@ STARTED_WITH = dict(os.environ)
 def call(*command: str | Path, cwd: Path = ROOT, **variables: str) -> None:
     """Runs a command, whose output belongs to the test; fails unless it exits with 0."""
     print("$", *command, flush=True)
-    subprocess.run(list(map(str, command)), cwd=cwd, env={**os.environ, **variables}, check=True)
+    words = list(map(str, command))
+    code = subprocess.run(words, cwd=cwd, env={**os.environ, **variables}, check=False).returncode
+    assert code == 0, f"exit code {code}: {shlex.join(words)[:200]}"
 
 
 def output_of(*command: str | Path, **variables: str) -> str:

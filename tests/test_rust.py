@@ -1,0 +1,47 @@
+"""The tests of the Rust crates, which cargo runs, and what runs their code in other builds."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+from checkout import TARGET, call, need_packages, output_of
+
+
+@pytest.mark.first
+@pytest.mark.usefixtures("debug_rtf")
+def test_workspace() -> None:
+    """All crates; `cargo test -p CRATE NAME` runs one test."""
+    # Many tests wait for processes, so more of them than processors run at the same time. `nohup`
+    # passes an ignored SIGHUP on, and `rtf` respects it; some tests send SIGHUP.
+    threads = str(3 * (os.cpu_count() or 1))
+    command = "env --default-signal=HUP cargo test --workspace --locked --no-fail-fast"
+    call(*command.split(), RUST_TEST_THREADS=threads)
+
+
+@pytest.mark.first
+@pytest.mark.usefixtures("rtf")
+def test_fuzz() -> None:
+    """The libraries again, with libFuzzer's counters and the dependencies of the release build."""
+    call("tools/fuzz.sh", "--seconds", "10", "--seed", "1")
+
+
+@pytest.mark.first
+@pytest.mark.usefixtures("debug_rtf")
+def test_sanitizers() -> None:
+    """GCC's; those with valgrind take minutes, and `make sanitizers` runs all."""
+    call("tools/sanitizers.sh", "sanitizer")
+
+
+@pytest.mark.usefixtures("rtf")
+def test_instruction_counts() -> None:
+    call("tools/counts.py", TARGET / "release/rtf-counts")
+
+
+@pytest.mark.usefixtures("debug_rtf")
+def test_history_in_postgresql() -> None:
+    """With a server, which the test starts and ends."""
+    need_packages("postgresql")
+    bin_dir = output_of("bash", "-c", "ls -d /usr/lib/postgresql/*/bin | sort -V | tail -n 1")
+    command = "cargo test --quiet --locked -p rtf-history --test postgres -- --ignored"
+    call(*command.split(), RTF_POSTGRES_BIN=bin_dir)

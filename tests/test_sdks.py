@@ -1,0 +1,27 @@
+"""The SDKs in Python and Ruby, with their own tools. `cargo test` has those of other languages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from checkout import ROOT, call, venv
+
+PYTHON = ROOT / "sdk/python"
+RUBY = ROOT / "sdk/ruby"
+
+
+@pytest.mark.parametrize("tool", ["ruff check .", "ruff format --check .", "mypy", "pytest"])
+def test_python(tool: str) -> None:
+    program, *arguments = tool.split()
+    call(venv("test") / program, *arguments, cwd=PYTHON)
+
+
+@pytest.mark.parametrize("file", sorted(RUBY.glob("test/*_test.rb")), ids=lambda it: it.stem)
+def test_ruby(file: Path) -> None:
+    call("ruby", "-w", "-Ilib", "-Itest", file, cwd=RUBY)
+
+
+def test_gem(tmp_path: Path) -> None:
+    specification = "robot-testing-framework.gemspec"
+    call("gem", "build", "--silent", "--output", tmp_path / "rtf.gem", specification, cwd=RUBY)
