@@ -52,6 +52,17 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.xdist_group(item.nodeid.partition("::")[0]))
 
 
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Prints how each failed test is repeated."""
+    failed = [each for kind in ("failed", "error") for each in terminalreporter.getreports(kind)]
+    # A test that failed while it was set up or torn down may be in both lists.
+    for name in dict.fromkeys(each.nodeid.partition("@")[0] for each in failed):
+        terminalreporter.write_line(f"failed: tools/test.sh 'tests/{name}'", red=True)
+    skipped = terminalreporter.getreports("skipped")
+    if skipped:
+        terminalreporter.write_line(f"{len(skipped)} skipped: a test that lacks something fails")
+
+
 @pytest.fixture(scope="session")
 def rtf(request: pytest.FixtureRequest) -> str:
     """The optimised program."""
