@@ -1,22 +1,17 @@
-#!/usr/bin/env python3
 """Debugs a test of each language on a pseudo-terminal, with the debugger that its users have.
 
-    tests/debug/check.py RTF PLUGINS
-
-PLUGINS contains libreach.so, built from tests/debug/reach.cpp. The commands are those of
-docs/how-to/debugging.md.
+The commands are those of docs/how-to/debugging.md.
 """
 
 import os
 import re
 import signal
 import subprocess
-import sys
-import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
 
+import pytest
+from checkout import ROOT, call
 from terminal import Terminal
 
 HERE = Path(__file__).resolve().parent
@@ -40,18 +35,12 @@ SUITE = f"""\
 PROGRAM = '<suite name="p"><test type="program">/bin/true</test></suite>'
 
 
-def check(holds: bool, text: str) -> None:
-    """End with an explanation unless the condition holds."""
-    if not holds:
-        raise SystemExit(f"FAILED: {text}")
-
-
 class Bench:
     """A directory with the suite."""
 
-    def __init__(self, rtf: Path, plugins: Path, directory: Path) -> None:
+    def __init__(self, rtf: str, plugins: Path, directory: Path) -> None:
         """Write the suite."""
-        self.rtf, self.directory = str(rtf), directory
+        self.rtf, self.directory = rtf, directory
         (directory / "arm.xml").write_text(SUITE)
         self.environment = os.environ | {
             "RTF_PLUGIN_PATH": str(plugins),
@@ -72,25 +61,41 @@ class Bench:
 
     def finish(self, session: Terminal, code: int, last: str) -> None:
         """Check the end of a run: exit code, last line, tear-down, terminal."""
-        check(session.finish() == code, f"exit code {code}\n{session.output}")
-        check(re.search(f"^{last}", session.output, re.M) is not None, f"{last}\n{session.output}")
-        check(self.stopped_fixtures() == 1, f"the fixture was torn down\n{session.output}")
+        assert session.finish() == code, f"exit code {code}\n{session.output}"
+        assert re.search(f"^{last}", session.output, re.M) is not None, f"{last}\n{session.output}"
+        assert self.stopped_fixtures() == 1, f"the fixture was torn down\n{session.output}"
+
+
+@pytest.fixture(scope="session")
+def plugins(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The directory of the plug-in in C++."""
+    directory = tmp_path_factory.mktemp("plugins")
+    headers = [f"-I{ROOT}/sdk/cpp/include", f"-I{ROOT}/sdk/c/include"]
+    compiler = ["c++", "-std=c++17", "-g", "-O0", "-shared", "-fPIC", *headers]
+    call(*compiler, HERE / "reach.cpp", "-o", directory / "libreach.so")
+    return directory
+
+
+@pytest.fixture
+def bench(rtf: str, plugins: Path, tmp_path: Path) -> Bench:
+    """A directory with the suite."""
+    return Bench(rtf, plugins, tmp_path)
 
 
 def wait_longer_than_the_limits(session: Terminal, bench: Bench) -> int:
     """Wait at a prompt; return the process group in the foreground."""
     time.sleep(2 * LIMIT)
-    check(bench.stopped_fixtures() == 0 or session.foreground() != session.pid, "the fixture is up")
-    check(session.foreground() != session.pid, "the terminal is the test's")
+    assert bench.stopped_fixtures() == 0 or session.foreground() != session.pid, "the fixture is up"
+    assert session.foreground() != session.pid, "the terminal is the test's"
     return session.foreground()
 
 
-def pdb(bench: Bench) -> None:
+def test_pdb_shows_a_variable_and_continues(bench: Bench) -> None:
     """`breakpoint()` in a Python test."""
     with bench.debug("--debug", "arm.xml::Python") as session:
         pid = int(session.expect(r"^debug: process (\d+) has the terminal; .* kill -INT (\d+)$")[1])
         session.expect(r"\(Pdb\) ")
-        check(wait_longer_than_the_limits(session, bench) == pid, "its process group leads")
+        assert wait_longer_than_the_limits(session, bench) == pid, "its process group leads"
         session.send("p angle\n")
         session.expect(r"^42\n\(Pdb\) ")
         session.interrupt()
@@ -101,7 +106,7 @@ def pdb(bench: Bench) -> None:
         bench.finish(session, 0, "PASSED  1 test ")
 
 
-def interrupted_loop(bench: Bench) -> None:
+def test_ctrl_c_stops_a_test_in_pdb_and_not_the_run(bench: Bench) -> None:
     """Ctrl-C stops a test in pdb, not the run; after the test, it ends the run."""
     with bench.debug("--debug", "arm.xml::Busy") as session:
         session.expect(r"\(Pdb\) ")
@@ -115,23 +120,23 @@ def interrupted_loop(bench: Bench) -> None:
         bench.finish(session, 1, "FAILED  1 test ")
 
 
-def ended_run(bench: Bench) -> None:
+def test_sigint_ends_the_run_while_the_test_has_the_terminal(bench: Bench) -> None:
     """SIGINT to rtf ends the run while the test has the terminal."""
     with bench.debug("--debug", "arm.xml::Python") as session:
         rtf = int(session.expect(r"^debug: process .* kill -INT (\d+)$")[1])
-        check(rtf == session.pid, "the process that the user started")
+        assert rtf == session.pid, "the process that the user started"
         session.expect(r"\(Pdb\) ")
         hold = bench.directory / "hold"
         hold.touch()
         os.kill(rtf, signal.SIGINT)
         session.expect("^ *interrupted +[0-9.]+ s")
-        check(session.foreground() == session.pid, "rtf has the foreground again")
-        check(session.has_first_settings(), "the terminal has its first settings")
+        assert session.foreground() == session.pid, "rtf has the foreground again"
+        assert session.has_first_settings(), "the terminal has its first settings"
         hold.unlink()
         bench.finish(session, 130, "INTERRUPTED")
 
 
-def job_control(bench: Bench) -> None:
+def test_a_shell_gets_its_terminal_back(bench: Bench) -> None:
     """In a shell: Ctrl-Z does nothing, SIGQUIT kills the test, and the shell gets its terminal."""
     command = f"{bench.rtf} run --debug arm.xml::Python; echo exit code $?\n"
     environment = bench.environment | {"PS1": "shell> "}
@@ -150,10 +155,10 @@ def job_control(bench: Bench) -> None:
         session.expect(r"ended in run with signal 3 \(SIGQUIT\)")
         session.expect("^exit code 1\nshell> ")
         session.send("exit 3\n")
-        check(session.finish() == 3, session.output)
+        assert session.finish() == 3, session.output
 
 
-def lua(bench: Bench) -> None:
+def test_lua_debugs_in_its_console(bench: Bench) -> None:
     """`debug.debug()` in a Lua test."""
     with bench.debug("--debug", "arm.xml::Lua") as session:
         session.expect("lua_debug> ")
@@ -164,7 +169,7 @@ def lua(bench: Bench) -> None:
         bench.finish(session, 0, "PASSED  1 test ")
 
 
-def irb(bench: Bench) -> None:
+def test_irb_shows_a_variable_and_continues(bench: Bench) -> None:
     """`binding.irb` in a Ruby test."""
     with bench.debug("--debug", "arm.xml::Ruby") as session:
         session.expect(r"irb\(.*> ")
@@ -175,7 +180,7 @@ def irb(bench: Bench) -> None:
         bench.finish(session, 0, "PASSED  1 test ")
 
 
-def gdb(bench: Bench) -> None:
+def test_gdb_starts_a_test_in_cpp(bench: Bench) -> None:
     """A C++ test that gdb starts."""
     with bench.debug("--debugger", "gdb -q --args", "arm.xml::Cpp") as session:
         session.expect(r"\(gdb\) ")
@@ -197,7 +202,7 @@ def gdb(bench: Bench) -> None:
         bench.finish(session, 0, "PASSED  1 test ")
 
 
-def attached_gdb(bench: Bench) -> None:
+def test_gdb_attaches_to_a_waiting_test(bench: Bench) -> None:
     """Attach gdb to the waiting process of a C++ test."""
     command = [bench.rtf, "run", "--debug-wait", "arm.xml::Cpp"]
     with subprocess.Popen(
@@ -212,7 +217,7 @@ def attached_gdb(bench: Bench) -> None:
         assert run.stderr
         line = run.stderr.readline()
         pid = re.match(r"debug: process (\d+) waits for a debugger; .* kill -USR1 (\d+)$", line)
-        check(pid is not None, line)
+        assert pid is not None, line
         assert pid
         time.sleep(2 * LIMIT)
         commands = [
@@ -231,12 +236,12 @@ def attached_gdb(bench: Bench) -> None:
             timeout=120,
             check=False,
         )
-        check("$1 = 42" in attached.stdout, attached.stdout + attached.stderr)
+        assert "$1 = 42" in attached.stdout, attached.stdout + attached.stderr
         output, errors = run.communicate(timeout=120)
-        check(run.returncode == 0, output + errors)
+        assert run.returncode == 0, output + errors
 
 
-def continued(bench: Bench) -> None:
+def test_a_signal_continues_a_waiting_test(bench: Bench) -> None:
     """Without a debugger, SIGUSR1 starts the test; a stop of the run ends the wait."""
     for number, code in ((signal.SIGUSR1, 0), (signal.SIGINT, 130)):
         command = [bench.rtf, "run", "--debug-wait", "arm.xml::Lua"]
@@ -253,10 +258,10 @@ def continued(bench: Bench) -> None:
             runner = int(run.stderr.readline().split()[-1])
             os.kill(runner if number == signal.SIGUSR1 else run.pid, number)
             output, errors = run.communicate(timeout=120)
-            check(run.returncode == code, output + errors)
+            assert run.returncode == code, output + errors
 
 
-def refused(bench: Bench) -> None:
+def test_what_cannot_be_debugged_is_refused(bench: Bench) -> None:
     """Several tests, no terminal, a format for programs."""
 
     def error(*arguments: str) -> str:
@@ -270,46 +275,16 @@ def refused(bench: Bench) -> None:
             timeout=120,
             check=False,
         )
-        check(result.returncode == 2, result.stderr)
+        assert result.returncode == 2, result.stderr
         return result.stderr
 
     (bench.directory / "program.xml").write_text(PROGRAM)
     program = error("--debug-wait", "program.xml")
-    check("a test of type `program` runs in processes of its framework" in program, program)
+    assert "a test of type `program` runs in processes of its framework" in program, program
     several = error("--debug-wait", "arm.xml")
-    check("one test can be debugged, but 5 tests are selected" in several, several)
-    check("name one of `arm.xml::Python`, `arm.xml::Busy`, `arm.xml::Lua`" in several, several)
-    check("standard input is no terminal" in error("--debug", "arm.xml::Lua"), "no terminal")
-    check(
-        "mixed with that of `--format`" in error("--debug", "--format", "json", "arm.xml::Lua"),
-        "the format",
-    )
-
-
-def main() -> None:
-    """Run all sessions."""
-    rtf, plugins = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-    sessions: list[Callable[[Bench], None]] = [
-        refused,
-        pdb,
-        interrupted_loop,
-        ended_run,
-        job_control,
-        lua,
-        irb,
-        gdb,
-        attached_gdb,
-        continued,
-    ]
-    wanted = sys.argv[3:]
-    for session in sessions:
-        if wanted and session.__name__ not in wanted:
-            continue
-        started = time.monotonic()
-        with tempfile.TemporaryDirectory() as directory:
-            session(Bench(rtf, plugins, Path(directory)))
-        print(f"{session.__name__}: ok, {time.monotonic() - started:.1f} s", flush=True)
-
-
-if __name__ == "__main__":
-    main()
+    assert "one test can be debugged, but 5 tests are selected" in several, several
+    assert "name one of `arm.xml::Python`, `arm.xml::Busy`, `arm.xml::Lua`" in several, several
+    assert "standard input is no terminal" in error("--debug", "arm.xml::Lua"), "no terminal"
+    assert "mixed with that of `--format`" in error(
+        "--debug", "--format", "json", "arm.xml::Lua"
+    ), "the format"

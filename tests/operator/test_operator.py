@@ -1,39 +1,23 @@
-#!/usr/bin/env python3
-"""Answers questions of tests on a pseudo-terminal, as an operator does.
-
-tests/operator/check.py RTF
-"""
+"""Answers questions of tests on a pseudo-terminal, as an operator does."""
 
 import json
 import os
 import re
 import signal
 import subprocess
-import sys
-import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
 
+import pytest
+from terminal import Terminal
+
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "debug"))
-
-import terminal  # noqa: E402 - next to this directory
-from terminal import Terminal  # noqa: E402
-
-terminal.LIMIT = 20.0
-
+SECONDS = 20.0
 # Less than an operator takes: the limit is paused while a question is open.
 LIMIT = 2.0
 KINDS = ("choice", "text", "instruction", "default", "two", "forever")
 # An interrupted question, its tear-down and its reports: far less than its timeout.
 QUICK = 15.0
-
-
-def check(holds: bool, text: str) -> None:
-    """End with an explanation unless the condition holds."""
-    if not holds:
-        raise SystemExit(f"FAILED: {text}")
 
 
 def suite(name: str, kinds: tuple[str, ...] = KINDS, collapses: bool = False) -> str:
@@ -47,9 +31,9 @@ def suite(name: str, kinds: tuple[str, ...] = KINDS, collapses: bool = False) ->
 class Bench:
     """A directory with suites."""
 
-    def __init__(self, rtf: Path, directory: Path) -> None:
+    def __init__(self, rtf: str, directory: Path) -> None:
         """Write the suites."""
-        self.rtf, self.directory = str(rtf), directory
+        self.rtf, self.directory = rtf, directory
         (directory / "arm.xml").write_text(suite("arm"))
         (directory / "leg.xml").write_text(suite("leg", ("choice",)))
         (directory / "fragile.xml").write_text(suite("fragile", ("forever",), collapses=True))
@@ -63,32 +47,38 @@ class Bench:
     def run(self, *arguments: str, **environment: str) -> Terminal:
         """Start a run on a terminal."""
         command = [self.rtf, "run", *arguments]
-        return Terminal(command, self.directory, self.environment | environment)
+        return Terminal(command, self.directory, self.environment | environment, SECONDS)
 
     def finish(self, session: Terminal, code: int) -> list[dict[str, object]]:
         """Check the end of a run; return the ends of its questions."""
-        check(session.finish() == code, f"exit code {code}\n{session.output}")
-        check(session.has_first_settings(), "the terminal has its settings")
+        assert session.finish() == code, f"exit code {code}\n{session.output}"
+        assert session.has_first_settings(), "the terminal has its settings"
         journal = self.directory / "rtf-results" / "latest" / "events.jsonl"
         events = [json.loads(line) for line in journal.read_text().splitlines()]
         self.events = events
-        check(events[-1]["type"] == "run-finished", "the journal is complete")
+        assert events[-1]["type"] == "run-finished", "the journal is complete"
         asked = sum(event["type"] == "question-asked" for event in events)
         closed = [event for event in events if event["type"] == "question-closed"]
-        check(asked == len(closed) > 0, f"{asked} questions, {len(closed)} ends")
+        assert asked == len(closed) > 0, f"{asked} questions, {len(closed)} ends"
         return closed
+
+
+@pytest.fixture
+def bench(rtf: str, tmp_path: Path) -> Bench:
+    """A directory with suites."""
+    return Bench(rtf, tmp_path)
 
 
 def only(closed: list[dict[str, object]]) -> dict[str, object]:
     """The only question of a run."""
-    check(len(closed) == 1, f"one question: {closed}")
+    assert len(closed) == 1, f"one question: {closed}"
     return closed[0]
 
 
 ALICE = {"via": "console", "who": "alice"}
 
 
-def a_choice(bench: Bench) -> None:
+def test_an_answer_that_is_no_choice_is_explained_and_the_limit_is_paused(bench: Bench) -> None:
     """Answers that are none are explained; the limit of the test is paused."""
     with bench.run("arm.xml::choice") as session:
         session.expect(
@@ -104,11 +94,11 @@ def a_choice(bench: Bench) -> None:
         session.send("1\n")
         session.expect(r"answer  arm/choice: yes \(alice, on the console\)")
         closed = only(bench.finish(session, 0))
-        check(closed["answer"] == "yes" and closed["by"] == ALICE, f"{closed}")
-        check("\x1b[2J" not in session.output, "no text clears the screen")
+        assert closed["answer"] == "yes" and closed["by"] == ALICE, f"{closed}"
+        assert "\x1b[2J" not in session.output, "no text clears the screen"
 
 
-def reports(bench: Bench) -> None:
+def test_each_report_names_the_question_its_answer_and_who_gave_it(bench: Bench) -> None:
     """Each report names the question, its answer, and who gave it; also of a merged run."""
     with bench.run("arm.xml::instruction") as session:
         session.expect(r"answer  arm/instruction> ")
@@ -125,7 +115,7 @@ def reports(bench: Bench) -> None:
         merge, cwd=bench.directory, env=bench.environment, check=True, capture_output=True
     )
     merged = (bench.directory / "rtf-results" / "latest").resolve()
-    check(merged not in (first, second), "the merged run is the latest")
+    assert merged not in (first, second), "the merged run is the latest"
     for form, expected in {
         "text": "question: Push the button\n        answer: done (alice, on the console)",
         "junit": 'name="question.Push the button" value="done (alice, on the console)"',
@@ -137,53 +127,53 @@ def reports(bench: Bench) -> None:
             report = subprocess.run(
                 command, env=bench.environment, check=False, capture_output=True, text=True
             )
-            check(expected in report.stdout, f"{form}\n{report.stdout}{report.stderr}")
+            assert expected in report.stdout, f"{form}\n{report.stdout}{report.stderr}"
     lines = (merged / "events.jsonl").read_text().splitlines()
     asked = next(e for e in map(json.loads, lines) if e["type"] == "question-asked")
-    check((merged / asked["picture"]).is_file(), f"{asked}")
+    assert (merged / asked["picture"]).is_file(), f"{asked}"
 
 
-def a_text(bench: Bench) -> None:
+def test_any_line_answers_a_question_for_text(bench: Bench) -> None:
     """Any line, also with letters of other scripts."""
     with bench.run("arm.xml::text") as session:
         session.expect(r"a line of text, within 1 min")
         session.expect(r"answer  arm/text> ")
         session.send("SN-17 größe\n")
-        check(only(bench.finish(session, 0))["answer"] == "SN-17 größe", "the text")
+        assert only(bench.finish(session, 0))["answer"] == "SN-17 größe", "the text"
 
 
-def an_instruction(bench: Bench) -> None:
+def test_the_path_of_a_picture_is_shown_and_cannot_is_an_error(bench: Bench) -> None:
     """The path of the picture is shown; `cannot` is an error."""
     with bench.run("arm.xml::instruction") as session:
         picture = session.expect(r"^ +picture: (\S+button\.png)$")[1]
         content = (bench.directory / picture).read_bytes()
-        check(content.startswith(b"\x89PNG"), picture)
+        assert content.startswith(b"\x89PNG"), picture
         session.expect(r"answer  arm/instruction> ")
         session.send("cannot\n")
         session.expect(r"error: the operator cannot do this: Push the button")
-        check(only(bench.finish(session, 1))["answer"] == "cannot", "the answer")
+        assert only(bench.finish(session, 1))["answer"] == "cannot", "the answer"
 
 
-def a_declined_question(bench: Bench) -> None:
+def test_ctrl_d_declines_to_answer(bench: Bench) -> None:
     """Ctrl-D: without a default, that is an error."""
     with bench.run("arm.xml::text") as session:
         session.expect(r"answer  arm/text> ")
         session.send("\x04")
         session.expect(r'no answer to "Serial number\?": declined by alice, on the console')
         closed = only(bench.finish(session, 1))
-        check("answer" not in closed and closed["by"] == ALICE, f"{closed}")
+        assert "answer" not in closed and closed["by"] == ALICE, f"{closed}"
 
 
-def a_default(bench: Bench) -> None:
+def test_the_default_counts_if_nobody_answers_in_time(bench: Bench) -> None:
     """Nobody answers in time."""
     with bench.run("arm.xml::default") as session:
         session.expect(r"answer  arm/default> ")
         session.expect(r"answer  arm/default: no \(default: no operator answered within 500ms\)")
         closed = only(bench.finish(session, 0))
-        check(closed["answer"] == "no" and "by" not in closed, f"{closed}")
+        assert closed["answer"] == "no" and "by" not in closed, f"{closed}"
 
 
-def a_line_for_an_ended_question(bench: Bench) -> None:
+def test_a_line_for_an_ended_question_answers_no_other_one(bench: Bench) -> None:
     """What was typed for a question that has ended answers no other one."""
     with bench.run("arm.xml::two") as session:
         session.expect(r"First\?")
@@ -195,11 +185,11 @@ def a_line_for_an_ended_question(bench: Bench) -> None:
         session.expect(r"type an answer")
         session.send("no\n")
         first, second = bench.finish(session, 0)
-        check((first["answer"], second["answer"]) == ("no", "no"), f"{first} {second}")
-        check("by" not in first and second["by"] == ALICE, f"{first} {second}")
+        assert (first["answer"], second["answer"]) == ("no", "no"), f"{first} {second}"
+        assert "by" not in first and second["by"] == ALICE, f"{first} {second}"
 
 
-def two_suites(bench: Bench) -> None:
+def test_two_questions_are_answered_one_after_the_other(bench: Bench) -> None:
     """Two questions wait: one is answered after the other."""
     with bench.run("-j2", "arm.xml::choice", "leg.xml") as session:
         first = session.expect(r"answer  (arm|leg)/choice> ")[1]
@@ -211,10 +201,10 @@ def two_suites(bench: Bench) -> None:
         session.expect(rf"answer  {other}/choice> ")
         session.send("no\n")
         session.expect(rf"answer  {other}/choice: no")
-        check({it["answer"] for it in bench.finish(session, 0)} == {"yes", "no"}, "both")
+        assert {it["answer"] for it in bench.finish(session, 0)} == {"yes", "no"}, "both"
 
 
-def interrupted(bench: Bench) -> None:
+def test_ctrl_c_ends_the_question_and_the_test_is_torn_down(bench: Bench) -> None:
     """Ctrl-C ends the question at once, and the test is torn down."""
     with bench.run("arm.xml::forever") as session:
         session.expect(r"answer  arm/forever> ")
@@ -222,33 +212,33 @@ def interrupted(bench: Bench) -> None:
         session.interrupt()
         session.expect(r"answer  arm/forever: not answered: stopped by SIGINT")
         closed = only(bench.finish(session, 130))
-        check(time.monotonic() - start < QUICK, f"{time.monotonic() - start} s")
-        check(closed["reason"] == "stopped by SIGINT", f"{closed}")
+        assert time.monotonic() - start < QUICK, f"{time.monotonic() - start} s"
+        assert closed["reason"] == "stopped by SIGINT", f"{closed}"
         output = "".join(e["text"] for e in bench.events if e["type"] == "output")
-        check(output == "the answer is no longer awaited\ntorn down\n", output)
+        assert output == "the answer is no longer awaited\ntorn down\n", output
 
 
-def a_collapse(bench: Bench) -> None:
+def test_a_collapse_ends_the_question(bench: Bench) -> None:
     """A fixture that collapses ends the question."""
     with bench.run("fragile.xml") as session:
         session.expect(r"answer  fragile/forever> ")
         session.expect(r"answer  fragile/forever: not answered: fixture `arm` collapsed")
-        check("collapsed" in str(only(bench.finish(session, 1))["reason"]), "the reason")
+        assert "collapsed" in str(only(bench.finish(session, 1))["reason"]), "the reason"
 
 
-def in_the_background(bench: Bench) -> None:
+def test_a_run_in_the_background_of_a_shell_asks(bench: Bench) -> None:
     """A run in the background of a shell asks, and is not stopped by the terminal."""
     shell = "set -m; {0} run arm.xml::choice & sleep 3; kill -0 $! && jobs -l; fg >/dev/null"
     command = ["bash", "-c", shell.format(bench.rtf)]
-    with Terminal(command, bench.directory, bench.environment) as session:
+    with Terminal(command, bench.directory, bench.environment, SECONDS) as session:
         session.expect(r"Is it")
         session.expect(r"Running")
         session.send("yes\n")
         session.expect(r"answer  arm/choice: yes \(alice, on the console\)")
-        check(only(bench.finish(session, 0))["answer"] == "yes", "the answer")
+        assert only(bench.finish(session, 0))["answer"] == "yes", "the answer"
 
 
-def nobody(bench: Bench) -> None:
+def test_nobody_is_asked_in_ci_or_without_a_terminal(bench: Bench) -> None:
     """Nobody is asked in CI, with --no-input, without a terminal; defaults count."""
     for arguments, environment, reason in [
         (["--no-input"], {}, "`--no-input` is set"),
@@ -263,11 +253,11 @@ def nobody(bench: Bench) -> None:
             "arm.xml::default", "arm.xml::forever", *arguments, **environment
         ) as session:
             default, forever = bench.finish(session, 1)
-            check(default["answer"] == "no", f"{default}")
+            assert default["answer"] == "no", f"{default}"
             for closed in (default, forever):
-                check(closed["reason"] == f"no operator can answer: {reason}", f"{closed}")
-            check(
-                "answer  arm" not in re.sub(r"answer  arm/\w+: ", "", session.output), "no prompt"
+                assert closed["reason"] == f"no operator can answer: {reason}", f"{closed}"
+            assert "answer  arm" not in re.sub(r"answer  arm/\w+: ", "", session.output), (
+                "no prompt"
             )
     command = [bench.rtf, "run", "arm.xml::forever"]
     piped = subprocess.run(
@@ -280,50 +270,16 @@ def nobody(bench: Bench) -> None:
         timeout=QUICK,
         check=False,
     )
-    check(piped.returncode == 1, piped.stdout)
-    check("no operator can answer: standard input is no terminal" in piped.stdout, piped.stdout)
+    assert piped.returncode == 1, piped.stdout
+    assert "no operator can answer: standard input is no terminal" in piped.stdout, piped.stdout
 
 
-def killed(bench: Bench) -> None:
+def test_the_terminal_is_usable_after_the_runner_was_killed(bench: Bench) -> None:
     """The guard ends a run whose runner dies while a question waits; the terminal is usable."""
     with bench.run("arm.xml::forever") as session:
         session.expect(r"answer  arm/forever> ")
         children = Path(f"/proc/{session.pid}/task/{session.pid}/children").read_text().split()
         os.kill(int(children[0]), signal.SIGKILL)
         session.expect(r"the runner died")
-        check(session.finish() == 5, session.output)
-
-        check(session.has_first_settings(), "the terminal has its settings")
-
-
-CHECKS: list[Callable[[Bench], None]] = [
-    a_choice,
-    reports,
-    a_text,
-    an_instruction,
-    a_declined_question,
-    a_default,
-    a_line_for_an_ended_question,
-    two_suites,
-    interrupted,
-    a_collapse,
-    in_the_background,
-    nobody,
-    killed,
-]
-
-
-def main() -> None:
-    """Run all checks."""
-    rtf = Path(sys.argv[1]).resolve()
-    wanted = sys.argv[2:]
-    for each in CHECKS:
-        if wanted and each.__name__ not in wanted:
-            continue
-        with tempfile.TemporaryDirectory() as directory:
-            each(Bench(rtf, Path(directory)))
-        print(f"ok: {each.__name__.replace('_', ' ')}")
-
-
-if __name__ == "__main__":
-    main()
+        assert session.finish() == 5, session.output
+        assert session.has_first_settings(), "the terminal has its settings"

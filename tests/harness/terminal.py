@@ -10,7 +10,8 @@ import time
 from pathlib import Path
 from types import TracebackType
 
-LIMIT = 120.0
+SECONDS = 120.0
+"""How long a session waits for a text, by default."""
 
 
 def _keep_output_at_signals() -> None:
@@ -29,9 +30,16 @@ def _default_signals() -> None:
 class Terminal:
     """A session on a pseudo-terminal, whose leader is the program."""
 
-    def __init__(self, command: list[str], directory: Path, environment: dict[str, str]) -> None:
+    def __init__(
+        self,
+        command: list[str],
+        directory: Path,
+        environment: dict[str, str],
+        seconds: float = SECONDS,
+    ) -> None:
         """Start the program."""
         self.output = ""
+        self._seconds = seconds
         self._position = 0
         self._status: int | None = None
         self.pid, self._terminal = pty.fork()
@@ -57,12 +65,12 @@ class Terminal:
         """End the program if it is still there."""
         if self._status is None:
             os.kill(self.pid, signal.SIGTERM)
-            self._wait(time.monotonic() + LIMIT)
+            self._wait(time.monotonic() + self._seconds)
         os.close(self._terminal)
 
     def expect(self, pattern: str) -> re.Match[str]:
         """Wait until the program has printed this after the last match."""
-        limit = time.monotonic() + LIMIT
+        limit = time.monotonic() + self._seconds
         while not (match := re.compile(pattern, re.M).search(self.output, self._position)):
             self._require(self._read(limit), f"`{pattern}` was not printed")
         self._position = match.end()
@@ -86,7 +94,7 @@ class Terminal:
 
     def finish(self) -> int:
         """Wait for the end of the program; return its exit code."""
-        limit = time.monotonic() + LIMIT
+        limit = time.monotonic() + self._seconds
         while self._read(limit):
             pass
         return self._wait(limit)
@@ -100,7 +108,7 @@ class Terminal:
                 time.sleep(0.01)
         if self._status is None:
             os.kill(self.pid, signal.SIGKILL)
-            raise SystemExit(f"FAILED: it did not end\n{self.output}")
+            raise AssertionError(f"it did not end\n{self.output}")
         return self._status
 
     def _read(self, limit: float) -> bool:
@@ -118,4 +126,4 @@ class Terminal:
 
     def _require(self, holds: bool, text: str) -> None:
         if not holds:
-            raise SystemExit(f"FAILED: {text}\n{self.output}")
+            raise AssertionError(f"{text}\n{self.output}")
