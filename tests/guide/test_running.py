@@ -1,7 +1,4 @@
-#!/usr/bin/env python3
-"""Runs every command of the pages about `rtf run` and the history, in a directory with suites.
-
-    check_running.py RTF PAGE…
+"""Every command of the pages about `rtf run` and the history runs, in a directory with suites.
 
 Exit code 1 is allowed, because the pages need a failing test; other errors are not.
 `rtf watch` is skipped, because it does not end.
@@ -12,10 +9,12 @@ from __future__ import annotations
 import os
 import re
 import subprocess
-import sys
-import tempfile
 from pathlib import Path
 
+import pytest
+from checkout import ROOT
+
+PAGES = "running flaky-tests soak parallel profiles doctor sharding history".split()
 BLOCK = re.compile(r"^```(sh|toml)\n(.*?)^```$", re.M | re.S)
 # Substitutes for times and runs that only the reader has.
 INSTEAD = {
@@ -76,25 +75,18 @@ class GripTest(rtf.TestCase):
 """
 
 
-def main() -> None:
-    """Checks each page."""
-    rtf = Path(sys.argv[1]).resolve()
-    for page in map(Path, sys.argv[2:]):
-        with tempfile.TemporaryDirectory() as directory:
-            check(rtf, page, Path(directory))
-
-
-def check(rtf: Path, page: Path, directory: Path) -> None:
-    """Runs the commands of a page in order."""
+@pytest.mark.parametrize("name", PAGES)
+def test_page_about_running(rtf: str, tmp_path: Path, name: str) -> None:
+    """The commands of a page, in order."""
+    page, directory = ROOT / f"docs/how-to/{name}.md", tmp_path
     blocks = BLOCK.findall(page.read_text())
     lines = [line for kind, text in blocks if kind == "sh" for line in text.splitlines()]
     commands = [line for line in lines if line and not line.startswith("rtf watch ")]
-    if len(commands) < 2:
-        raise SystemExit(f"{page} has only {len(commands)} commands: was its format changed?")
+    assert len(commands) >= 2, "was the format of the page changed?"
     for place in (directory, directory / "suites", directory / "tests"):
         fill(place)
     (directory / "tests" / "hand.xml").unlink()
-    if page.stem == "history":
+    if name == "history":
         run_before(directory, rtf)
     elif any("rtf history" in command for command in commands):
         call(directory, rtf, ["rtf", "run", "arm.xml"])
@@ -102,13 +94,12 @@ def check(rtf: Path, page: Path, directory: Path) -> None:
     if "postgres://" not in settings:  # a server that only the reader has
         (directory / "rtf.toml").write_text(settings)
     for command in map(possible, commands):
-        print(f"{page.name}: {command}", flush=True)
         if "--rerun" in command:
             call(directory, rtf, ["rtf", "run", "hand.xml"])
         call(directory, rtf, ["bash", "-o", "pipefail", "-c", command])
 
 
-def run_before(directory: Path, rtf: Path) -> None:
+def run_before(directory: Path, rtf: str) -> None:
     """Runs on the branches and robots that the page compares, also in another directory."""
     (directory / "EncoderTest.lua").write_text(ENCODER)
     (directory / ".gitignore").write_text("rtf-results\nnightly-results\nlocks\n")
@@ -147,16 +138,17 @@ def fill(directory: Path) -> None:
     (directory / "hand.xml").write_text(HAND)
 
 
-def call(directory: Path, rtf: Path, command: list[str]) -> None:
+def call(directory: Path, rtf: str, command: list[str]) -> None:
     """Runs a command, which may exit with 0 or 1."""
+    print("$", *command, flush=True)
     # Locks of other runs must not block this one.
-    own = {"PATH": f"{rtf.parent}:{os.environ['PATH']}", "RTF_LOCKS": str(directory / "locks")}
+    own = {
+        "PATH": f"{Path(rtf).parent}:{os.environ['PATH']}",
+        "RTF_LOCKS": str(directory / "locks"),
+    }
     ran = subprocess.run(
         command, cwd=directory, env=os.environ | own, capture_output=True, text=True, check=False
     )
-    if ran.returncode not in {0, 1} or "error: " in ran.stderr:
-        raise SystemExit(f"exit code {ran.returncode}\n{ran.stdout}{ran.stderr}")
-
-
-if __name__ == "__main__":
-    main()
+    print(ran.stdout, ran.stderr, flush=True)
+    assert ran.returncode in {0, 1}
+    assert "error: " not in ran.stderr
