@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Compares differences of pictures with those of scikit-image, for noise, scenes and their changes.
 
 pictures.py SIMILARITY

@@ -1,10 +1,9 @@
-#!/usr/bin/env python3
-"""Compares the change points of rtf-history with Apache Otava's, and with planted changes.
+"""Compares the change points of rtf-history with Apache Otava's, or with planted changes.
 
-    check.py CHANGE_POINTS
+    change_points.py CHANGE_POINTS otava|planted
 
-CHANGE_POINTS is the example of crates/rtf-history with that name. The interpreter has the
-packages of tools/requirements-history.txt.
+CHANGE_POINTS is the example of crates/rtf-history with that name.
+The interpreter has the packages of tools/requirements-history.txt. Part of test_history.py.
 """
 
 from __future__ import annotations
@@ -14,15 +13,11 @@ import math
 import subprocess
 import sys
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tools")]
-
-import made  # noqa: E402
-import oracle  # noqa: E402
-from sdist import fetch  # noqa: E402
+import made_series as made
+import otava_reference as oracle
+from sdist import fetch
 
 PER_KIND = 60
 OWN_FEWEST = 15
@@ -85,35 +80,22 @@ class Score:
 
 
 def main() -> int:
-    """Prints all differences and both tables; the exit code is 1 if a check failed."""
-    program = sys.argv[1]
-    source = fetch(sys.executable, "apache_otava", oracle.VERSION, oracle.SHA256)
-    own = oracle.own_series(source)
-    kinds = {kind: made.make(kind, PER_KIND) for kind in made.KINDS}
-    series = dict(own)
-    for kind, drawn in kinds.items():
-        series.update({f"{kind} {i}": one.values for i, one in enumerate(drawn)})
-    otava = {name: oracle.change_points(values) for name, values in series.items()}
-
-    problems = compare(program, series, otava)
-    if len(own) < OWN_FEWEST:
-        problems.append(f"only {len(own)} series in Otava's tests, expected {OWN_FEWEST}")
-    print(f"\n{'':26} {'rtf':>35} {'Otava':>27}")
-    names = f"{'found':>7} {'precision':>10} {'recall':>8}"
-    print(f"{'kind':26} {'planted':>7} {names} {names}")
-    for kind, drawn in kinds.items():
-        problems += score(program, kind, drawn, [otava[f"{kind} {i}"] for i in range(PER_KIND)])
+    """Prints all differences; the exit code is 1 if there is one."""
+    program, part = sys.argv[1:]
+    problems = compare(program) if part == "otava" else score_all(program)
     for problem in problems:
         print(f"failed: {problem}")
-    checks = len(series) + len(kinds)
-    print(f"\n{checks - len(problems)} passed, {len(problems)} failed")
     return 1 if problems else 0
 
 
-def compare(
-    program: str, series: dict[str, list[float]], otava: dict[str, list[oracle.Point]]
-) -> list[str]:
+def compare(program: str) -> list[str]:
     """Compares each point with those of Otava without its mistakes, by the same definition."""
+    own = oracle.own_series(fetch(sys.executable, "apache_otava", oracle.VERSION, oracle.SHA256))
+    series = own | {
+        f"{kind} {number}": one.values
+        for kind in made.KINDS
+        for number, one in enumerate(made.make(kind, PER_KIND))
+    }
     answers = run(program, list(series.values()), per_test=0.001, min_segment=1)
     problems = []
     unchanged = points = 0
@@ -124,11 +106,13 @@ def compare(
         if not same(expected, found):
             problems.append(f"{name}: Otava {expected}, rtf {found}")
         points += len(expected)
-        unchanged += [p.index for p in expected] == [p.index for p in otava[name]]
+        unchanged += [p.index for p in expected] == [p.index for p in oracle.change_points(values)]
     print(f"{points} points in {len(series)} series: {len(problems)} series differ from Otava's")
     print(f"Otava as it is finds the same points in {unchanged} of these series")
     if unchanged < UNCHANGED_SHARE * len(series):
         problems.append("Otava's mistakes make more difference than documented")
+    if len(own) < OWN_FEWEST:
+        problems.append(f"only {len(own)} series in Otava's tests, expected {OWN_FEWEST}")
     return problems
 
 
@@ -143,15 +127,22 @@ def same(expected: list[oracle.Point], found: list[oracle.Point]) -> bool:
     )
 
 
-def score(
-    program: str, kind: str, drawn: list[made.Series], otava: list[list[oracle.Point]]
-) -> list[str]:
+def score_all(program: str) -> list[str]:
+    """Prints a table, and checks it."""
+    print(f"{'':26} {'rtf':>35} {'Otava':>27}")
+    names = f"{'found':>7} {'precision':>10} {'recall':>8}"
+    print(f"{'kind':26} {'planted':>7} {names} {names}")
+    return [problem for kind in made.KINDS for problem in score(program, kind)]
+
+
+def score(program: str, kind: str) -> list[str]:
     """Prints a line of the table, and checks it."""
+    drawn = made.make(kind, PER_KIND)
     ours, theirs = Score(), Score()
     answers = run(program, [one.values for one in drawn])
-    for one, answer, points in zip(drawn, answers, otava, strict=True):
+    for one, answer in zip(drawn, answers, strict=True):
         ours.add(one.changes, [point["index"] for point in answer["points"]])
-        theirs.add(one.changes, [point.index for point in points])
+        theirs.add(one.changes, [point.index for point in oracle.change_points(one.values)])
     print(f"{kind:26} {ours.planted:7} {ours.row()} {theirs.row()}")
     if not ours.planted:
         enough = ours.found <= FALSE_CHANGES

@@ -1,7 +1,6 @@
-#!/usr/bin/env python3
 """Compares distances of dynamic time warping with those of dtaidistance, for random sequences.
 
-oracle.py WARP
+    warping.py WARP
 
 With a band, the sequences have the same length: otherwise dtaidistance counts the band from two
 diagonals, and rtf from one.

@@ -1,8 +1,8 @@
-#!/usr/bin/env python3
-"""Compares the limits that rtf reads from models with those of MuJoCo: the URDF of every iCub, the
-arm of example 01, and random MJCF with nested classes.
+"""Compares the limits that rtf reads from models with those of MuJoCo. Part of test_envelopes.py.
 
-oracle.py RTF
+    mujoco_limits.py RTF icub|example|random
+
+The models are the URDF of every iCub, the arm of example 01, or random MJCF with nested classes.
 """
 
 from __future__ import annotations
@@ -32,25 +32,27 @@ NUMBER = r"(-?[0-9.]+)"
 UNITS = {True: ("rad", "rad/s", "Nm"), False: ("m", "m/s", "N")}
 
 
-def main() -> int:
-    """Compares all; exits at the first difference."""
-    rtf = Path(sys.argv[1]).resolve()
-    models = sorted((Path(sys.prefix) / "share/iCub/robots").glob("*/model.urdf"))
-    if len(models) < 10:
-        sys.exit("there are not enough models of iCub")
-    joints = 0
+def main() -> None:
+    """Compares all models of a kind; exits at the first difference."""
+    rtf, kind = Path(sys.argv[1]).resolve(), sys.argv[2]
     with tempfile.TemporaryDirectory() as directory:
         # MuJoCo writes a log there.
         os.chdir(directory)
         check = Check(rtf, Path(directory))
-        for path in models:
-            joints += check.urdf(path.read_text(), path.parent.name)
-        joints += check.mjcf(simulator.ARM, "example 01")
-        generator = random.Random(19)
-        for number in range(RANDOM_MODELS):
-            joints += check.mjcf(random_model(generator), f"random model {number}")
-    print(f"ok: {len(models)} URDF, {RANDOM_MODELS + 1} MJCF, {joints} limits")
-    return 0
+        if kind == "icub":
+            models = sorted((Path(sys.prefix) / "share/iCub/robots").glob("*/model.urdf"))
+            if len(models) < 10:
+                sys.exit("there are not enough models of iCub")
+            joints = [check.urdf(path.read_text(), path.parent.name) for path in models]
+        elif kind == "example":
+            joints = [check.mjcf(simulator.ARM, "example 01")]
+        else:
+            generator = random.Random(19)
+            joints = [
+                check.mjcf(random_model(generator), f"random model {number}")
+                for number in range(RANDOM_MODELS)
+            ]
+    print(f"ok: {len(joints)} models, {sum(joints)} limits")
 
 
 class Check:
@@ -207,4 +209,4 @@ def random_model(generator: random.Random) -> str:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()
