@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
 import time
 import urllib.error
 import urllib.parse
@@ -29,12 +28,11 @@ LIMIT_SECS = 120
 
 
 def check_text(programs: Path, text: str) -> None:
-    """Exits if promtool finds something wrong with the metrics."""
+    """Fails if promtool finds something wrong with the metrics."""
     command = [str(programs / "promtool"), "check", "metrics"]
     checked = subprocess.run(command, check=False, input=text, text=True, capture_output=True)
     print(checked.stdout + checked.stderr, end="")
-    if checked.returncode != 0:
-        sys.exit(f"promtool exits with {checked.returncode}")
+    assert checked.returncode == 0
 
 
 @contextmanager
@@ -63,15 +61,14 @@ def wait_for_scrape(server: subprocess.Popen[bytes], address: str) -> None:
     """Waits until the server has scraped."""
     end = time.monotonic() + LIMIT_SECS
     while time.monotonic() < end:
-        if server.poll() is not None:
-            sys.exit(f"prometheus ended with {server.returncode}")
+        assert server.poll() is None, f"prometheus ended with {server.returncode}"
         try:
             if query(address, "up").get(()) == 1.0:
                 return
         except (urllib.error.URLError, ConnectionError):
             pass
         time.sleep(0.1)
-    sys.exit(f"prometheus did not scrape within {LIMIT_SECS} s")
+    raise AssertionError(f"prometheus did not scrape within {LIMIT_SECS} s")
 
 
 def query(address: str, expression: str) -> dict[tuple[str, ...], float]:

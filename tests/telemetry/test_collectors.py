@@ -6,14 +6,16 @@ import os
 import re
 import socket
 import subprocess
-import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 from threading import Thread
 
+import pytest
+from arm_suite import SPANS, write_suite
+from checkout import output_of
 from listening import free_port
 
 CONFIGURATION = """
@@ -57,26 +59,18 @@ WAIT_SECS = 120
 """A collector listens within a second; a busy machine needs more."""
 
 
-def check(command: list[str], folder: Path, collector: str, spans: list[str]) -> None:
-    """Exits unless the collector gets `spans`, and the others change no exit code of `command`."""
-    check_real(command, folder, collector, spans)
-    with answering(b'{"partialSuccess":{"rejectedSpans":"2"}}', 200) as (address, requests):
-        warned(command, folder, f"http://me:{PASSWORD}@{address}", "it rejected 2 spans")
-        found = {name: requests[0].get(name) for name in EXPECTED}
-        if found != EXPECTED:
-            sys.exit(f"a collector got the headers {found}")
-    with answering(b"busy", 503) as (address, _):
-        warned(command, folder, f"http://{address}", "it answered with 503 Service Unavailable")
-    warned(command, folder, f"http://127.0.0.1:{free_port()}", "connection refused")
-    with socket.create_server(("127.0.0.1", 0)) as silent:
-        address = f"http://127.0.0.1:{silent.getsockname()[1]}"
-        warned(command, folder, address, "no answer within 3 s")
+@pytest.fixture
+def command(debug_rtf: str, tmp_path: Path) -> list[str]:
+    """Runs a suite of `tmp_path` with a failing test."""
+    write_suite(tmp_path)
+    return [debug_rtf, "run", "suite.xml"]
 
 
-def check_real(command: list[str], folder: Path, collector: str, spans: list[str]) -> None:
-    """Exits unless the collector prints the spans of the run."""
+@pytest.mark.first
+def test_collector_of_opentelemetry_gets_the_spans(command: list[str], tmp_path: Path) -> None:
+    collector = output_of("tests/telemetry/collector/build.sh")
     port = free_port()
-    configuration, output = folder / "collector.yaml", folder / "collector.txt"
+    configuration, output = tmp_path / "collector.yaml", tmp_path / "collector.txt"
     configuration.write_text(CONFIGURATION.format(port=port))
     with (
         output.open("wb") as out,
@@ -84,10 +78,8 @@ def check_real(command: list[str], folder: Path, collector: str, spans: list[str
     ):
         try:
             wait_until(lambda: is_listening(port), server)
-            run = reported(command, folder, f"http://127.0.0.1:{port}")
-            if run.stderr:
-                sys.exit(f"unexpected output: {run.stderr}")
-            wait_until(lambda: len(SPAN.findall(output.read_text())) >= len(spans), server)
+            assert reported(command, tmp_path, f"http://127.0.0.1:{port}").stderr == ""
+            wait_until(lambda: len(SPAN.findall(output.read_text())) >= len(SPANS), server)
         finally:
             server.terminate()
     text = output.read_text()
@@ -96,18 +88,37 @@ def check_real(command: list[str], folder: Path, collector: str, spans: list[str
         f"{names.get(parent, 'rtf')} > {name}: {status}"
         for parent, _, name, status in SPAN.findall(text)
     ]
-    print("\n".join(found))
-    if found != spans or "service.name: Str(rtf)" not in text:
-        sys.exit(f"expected the spans {spans} in\n{text}")
+    assert found == SPANS
+    assert "service.name: Str(rtf)" in text
 
 
-def wait_until(condition: object, server: subprocess.Popen[bytes]) -> None:
+def test_collector_that_rejects_spans(command: list[str], tmp_path: Path) -> None:
+    with answering(b'{"partialSuccess":{"rejectedSpans":"2"}}', 200) as (address, requests):
+        warned(command, tmp_path, f"http://me:{PASSWORD}@{address}", "it rejected 2 spans")
+    assert {name: requests[0].get(name) for name in EXPECTED} == EXPECTED
+
+
+def test_busy_collector(command: list[str], tmp_path: Path) -> None:
+    with answering(b"busy", 503) as (address, _):
+        warned(command, tmp_path, f"http://{address}", "it answered with 503 Service Unavailable")
+
+
+def test_collector_that_does_not_exist(command: list[str], tmp_path: Path) -> None:
+    warned(command, tmp_path, f"http://127.0.0.1:{free_port()}", "connection refused")
+
+
+def test_silent_collector(command: list[str], tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        address = f"http://127.0.0.1:{silent.getsockname()[1]}"
+        warned(command, tmp_path, address, "no answer within 3 s")
+
+
+def wait_until(condition: Callable[[], bool], server: subprocess.Popen[bytes]) -> None:
     """Waits for a condition while the collector is active."""
-    assert callable(condition)
     end = time.monotonic() + WAIT_SECS
     while not condition():
-        if server.poll() is not None or time.monotonic() > end:
-            sys.exit(f"the collector is not ready; its exit code is {server.returncode}")
+        assert server.poll() is None, "the collector has ended"
+        assert time.monotonic() < end, "the collector is not ready"
         time.sleep(0.05)
 
 
@@ -129,22 +140,20 @@ def reported(command: list[str], folder: Path, address: str) -> subprocess.Compl
         text=True,
     )
     print(run.stderr, end="")
-    if run.returncode != 1:
-        sys.exit(f"a run with a failing test ended with {run.returncode}")
+    assert run.returncode == 1
     return run
 
 
 def warned(command: list[str], folder: Path, address: str, reason: str) -> None:
-    """Exits unless the run has one warning with the reason, and no secret is anywhere."""
+    """The run has one warning with the reason, and no secret is anywhere."""
     run = reported(command, folder, address)
     shown = address.replace(f"me:{PASSWORD}@", "")
     start = f"warning: the trace was not sent to `{shown}/v1/traces`: {reason} ("
-    if not run.stderr.startswith(start) or run.stderr.count("\n") != 1:
-        sys.exit(f"expected the warning {start}")
+    assert run.stderr.startswith(start)
+    assert run.stderr.count("\n") == 1
     journal = (folder / "rtf-results" / "latest" / "events.jsonl").read_text()
     for secret in (PASSWORD, KEY):
-        if secret in run.stderr + run.stdout + journal:
-            sys.exit(f"the secret {secret} is in the output or the journal")
+        assert secret not in run.stderr + run.stdout + journal
 
 
 @contextmanager
