@@ -16,7 +16,7 @@ if (target !== null) void start(target);
 async function start(target: HTMLElement): Promise<void> {
     try {
         const data = new EmbeddedData(document);
-        const { campaign } = await data.read<{ campaign?: CampaignReport }>('overview');
+        const { campaign } = await data.readBlock<{ campaign?: CampaignReport }>('overview');
         if (campaign !== undefined) {
             target.replaceChildren();
             mount(CampaignApp, { target, props: { campaign } });

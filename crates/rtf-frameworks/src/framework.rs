@@ -167,7 +167,11 @@ pub trait Framework {
 
     /// The cases to run for these selected ones, in order: a framework may add cases on
     /// which others depend.
-    fn order(&self, _listed: &[ListedCase], selected: Vec<ListedCase>) -> Vec<ListedCase> {
+    fn execution_order(
+        &self,
+        _listed: &[ListedCase],
+        selected: Vec<ListedCase>,
+    ) -> Vec<ListedCase> {
         selected
     }
 

@@ -34,7 +34,7 @@ class Blocks implements Data {
 
     constructor(private readonly blocks = BLOCKS) {}
 
-    read<T>(name: string): Promise<T> {
+    readBlock<T>(name: string): Promise<T> {
         this.names.push(name);
         return Promise.resolve(this.blocks[name] as T);
     }

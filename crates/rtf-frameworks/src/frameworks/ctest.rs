@@ -88,7 +88,7 @@ impl Framework for CTest {
         true
     }
 
-    fn order(&self, listed: &[ListedCase], selected: Vec<ListedCase>) -> Vec<ListedCase> {
+    fn execution_order(&self, listed: &[ListedCase], selected: Vec<ListedCase>) -> Vec<ListedCase> {
         let selected: HashSet<&str> = selected.iter().map(|case| case.name.as_str()).collect();
         let all = fixtures::with_fixtures(self.tests(), &selected);
         listed.iter().filter(|case| all.contains(case.name.as_str())).cloned().collect()

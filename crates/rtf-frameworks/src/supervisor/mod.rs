@@ -185,7 +185,7 @@ impl TestRun<'_> {
         let selected = listed.iter().filter(|case| wanted.includes(&case.name));
         let selected: Vec<ListedCase> = selected.cloned().collect();
         let is_all = selected.len() == listed.len();
-        let selected = self.framework.order(listed, selected);
+        let selected = self.framework.execution_order(listed, selected);
         if selected.is_empty() {
             let text = match wanted.is_all() {
                 true => "the program has no case",

@@ -57,7 +57,7 @@ pub async fn series(
         let mut all = SignalList::default();
         part.each(run, |event| {
             let EventKind::Sampled { samples, .. } = event.kind else { return };
-            all.extend(samples, |samples| window.of(samples));
+            all.add_samples(samples, |samples| window.of(samples));
         })?;
         let series = all.into_signals();
         JsonText::of(&Signals { series })

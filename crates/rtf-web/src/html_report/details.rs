@@ -94,7 +94,9 @@ impl DetailsBuilder {
             EventKind::Measured { measurement, .. } => {
                 self.measurements.add(Measured::of(seq, at, measurement), |_, _| ());
             }
-            EventKind::Sampled { samples, .. } => self.signals.extend(samples, |samples| samples),
+            EventKind::Sampled { samples, .. } => {
+                self.signals.add_samples(samples, |samples| samples)
+            }
             EventKind::Attached { attachment, .. } => {
                 let url = files.url(&attachment)?;
                 self.attachments.push(Attached { seq, at, attachment, url });

@@ -59,7 +59,7 @@ pub struct SignalList(Vec<(SignalSummary, SignalOutline)>);
 
 impl SignalList {
     /// Adds samples to the signal of their name; its curve gets those that `shown` returns.
-    pub fn extend(&mut self, samples: Samples, shown: impl Fn(Samples) -> Samples) {
+    pub fn add_samples(&mut self, samples: Samples, shown: impl Fn(Samples) -> Samples) {
         match self.0.iter_mut().find(|(signal, _)| signal.name == samples.name) {
             Some((signal, curve)) => {
                 signal.extend(&samples);

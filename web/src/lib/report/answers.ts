@@ -33,7 +33,7 @@ export class Answers {
     ) {}
 
     static async open(data: Data): Promise<Answers> {
-        const overview = await data.read<Overview>('overview');
+        const overview = await data.readBlock<Overview>('overview');
         if (overview.format !== FORMAT) throw new Error(`unknown format ${overview.format}`);
         return new Answers(data, overview);
     }
@@ -92,7 +92,7 @@ export class Answers {
     private async entry<T>(key: string): Promise<T | undefined> {
         const chunk = this.overview.places[key];
         if (chunk === undefined) return undefined;
-        return (await this.data.read<Record<string, T>>(String(chunk)))[key];
+        return (await this.data.readBlock<Record<string, T>>(String(chunk)))[key];
     }
 
     /** The tests with a case whose path contains these words. */

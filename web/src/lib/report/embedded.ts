@@ -6,7 +6,7 @@ const KEPT = 16;
 
 /** Reads named blocks of data. */
 export interface Data {
-    read<T>(name: string): Promise<T>;
+    readBlock<T>(name: string): Promise<T>;
 }
 
 export class EmbeddedData implements Data {
@@ -14,7 +14,7 @@ export class EmbeddedData implements Data {
 
     constructor(private readonly document: Document) {}
 
-    read<T>(name: string): Promise<T> {
+    readBlock<T>(name: string): Promise<T> {
         const block = this.decoded.get(name) ?? this.decode(name);
         // The one used last is the last.
         this.decoded.delete(name);
