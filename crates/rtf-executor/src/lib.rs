@@ -49,17 +49,13 @@ pub struct CollectRequest {
     pub shutdown_timeout: Duration,
 }
 
-/// Submits the tests, follows and merges them. `tests` makes the request for a number of shards.
-pub fn run(
-    options: &ClusterOptions,
-    request: &CollectRequest,
-    tests: impl FnOnce(u32) -> Result<TestsRequest, Failure>,
-) -> VerbResult {
+/// Submits the tests, of which `tests` has the number of shards, follows and merges them.
+pub fn run(options: &ClusterOptions, tests: TestsRequest, request: &CollectRequest) -> VerbResult {
     let shards = shards(options)?;
     // Reports are written at the end, but unusable paths are reported now.
     let output = &request.output;
     drop(reports::open_all(&output.reports, &output.results)?);
-    let (tasks, plan) = plan_all(tests(shards)?)?;
+    let (tasks, plan) = plan_all(tests)?;
     let cluster = cluster(options, &plan, &output.results, request.shutdown_timeout)?;
     let cluster = cluster.ok_or_else(|| Failure::internal("there is no cluster"))?;
     let submission = Submission::create(&output.results, shards, &plan, tasks, cluster)?;

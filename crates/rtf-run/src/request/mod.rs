@@ -3,6 +3,7 @@
 mod failed_cases;
 pub mod past_run;
 mod past_tests;
+pub mod rerun;
 
 use std::num::NonZeroU16;
 use std::path::PathBuf;
@@ -24,7 +25,6 @@ use crate::formats::{Annotations, OutputFormat, ReportFormat};
 use crate::history::PastTests;
 use crate::operator::Attendance;
 use crate::revision::RevisionQuery;
-pub use failed_cases::of_test as failed_cases;
 pub use past_tests::PastQuery;
 
 pub struct RunRequest {

@@ -95,7 +95,7 @@ pub struct SelectArgs {
     ///
     /// The files, parameters, environment string and order are those of that run.
     #[arg(help_heading = SELECTION, long, value_name = "VERDICT", value_delimiter = ',')]
-    pub rerun: Vec<RerunVerdict>,
+    pub rerun: Vec<RerunOption>,
 
     /// Run tests in random order; to repeat an order, give the seed that its run printed
     #[arg(help_heading = SELECTION, long, value_name = "SEED", value_parser = parse_seed)]
@@ -186,7 +186,7 @@ pub enum FlakyResult {
 
 /// The verdicts in a past run that `--rerun` selects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum RerunVerdict {
+pub enum RerunOption {
     /// Tests whose verdict is not green
     Failed,
     /// Tests that were interrupted, skipped, or never started

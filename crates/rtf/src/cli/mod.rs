@@ -40,7 +40,7 @@ pub use history::{
 };
 pub use import::{ImportOutput, ImportVerb};
 pub use inputs::{
-    FlakyResult, InputArgs, OrderOption, ProfileArgs, RepeatArgs, RerunVerdict, ResultsArgs,
+    FlakyResult, InputArgs, OrderOption, ProfileArgs, RepeatArgs, RerunOption, ResultsArgs,
 };
 pub use past::{MergeArgs, ReportArgs, ShowArgs};
 pub use project::{InitArgs, Language, NewArgs, ProjectKind};

@@ -1,21 +1,21 @@
 //! What a cluster runs: the tests of `rtf run --executor`, and what one of its tasks runs.
 
-use clap::FromArgMatches;
+use std::path::PathBuf;
+
+use clap::{ArgMatches, FromArgMatches};
 use rtf_executor::{
-    ArrayTask, ClusterOptions, CollectRequest, Executor, KubernetesOptions, Submission,
-    refuse_unused,
+    ArrayTask, ClusterOptions, Executor, KubernetesOptions, Submission, refuse_unused,
 };
 use rtf_plan::select::{Shard, ShardBy};
 use rtf_run::error::Failure;
 use rtf_run::history;
 
-use super::config;
 use crate::cli::{
     self, Annotations, ClusterArgs, ExecutorOption, RunArgs, RunVerbArgs, StdoutFormat,
 };
 
 /// The executor, with options that have an effect.
-pub fn cluster(args: &ClusterArgs) -> Result<ClusterOptions, Failure> {
+pub fn options(args: &ClusterArgs) -> Result<ClusterOptions, Failure> {
     let kubernetes = &args.kubernetes;
     let options = ClusterOptions {
         executor: match args.executor {
@@ -37,19 +37,9 @@ pub fn cluster(args: &ClusterArgs) -> Result<ClusterOptions, Failure> {
     Ok(options)
 }
 
-/// What is done with the tasks and their runs.
-pub fn collect(args: &RunArgs) -> Result<CollectRequest, Failure> {
-    Ok(CollectRequest {
-        output: super::output(args),
-        targets: super::targets(args, false)?,
-        symlink: args.symlink.clone(),
-        shutdown_timeout: args.shutdown_timeout,
-    })
-}
-
-/// An earlier submission, with its original options.
-pub fn resumed(args: &RunArgs) -> Result<(Submission, CollectRequest), Failure> {
-    let [dir] = args.input.inputs.as_slice() else {
+/// An earlier submission, and its original arguments. Enters its working directory.
+pub fn reopen(inputs: &[PathBuf]) -> Result<(Submission, RunVerbArgs, ArgMatches), Failure> {
+    let [dir] = inputs else {
         let hint = "`rtf run --resume rtf-results/.submissions/NAME`";
         return Err(Failure::input("`--resume` needs one directory").hint(hint));
     };
@@ -57,12 +47,10 @@ pub fn resumed(args: &RunArgs) -> Result<(Submission, CollectRequest), Failure> 
     std::env::set_current_dir(&submission.stored.working_dir).map_err(Failure::input)?;
     let stored =
         ["rtf", "run"].into_iter().map(str::to_owned).chain(submission.stored.args.clone());
-    let matches = cli::parser().try_get_matches_from(stored).map_err(Failure::input)?;
-    let matches = matches.subcommand().map_or(&matches, |(_, matches)| matches);
-    let mut args = RunVerbArgs::from_arg_matches(matches).map_err(Failure::input)?;
-    config::fill_run(&mut args.run, matches)?;
-    let request = collect(&args.run)?;
-    Ok((submission, request))
+    let mut matches = cli::parser().try_get_matches_from(stored).map_err(Failure::input)?;
+    let matches = matches.remove_subcommand().map_or(matches, |(_, matches)| matches);
+    let args = RunVerbArgs::from_arg_matches(&matches).map_err(Failure::input)?;
+    Ok((submission, args, matches))
 }
 
 /// Replaces the options of a task that concern the results: the submitting process merges them.
@@ -92,8 +80,16 @@ pub fn fill_task(
     Ok(())
 }
 
+/// Divides the tests into shards, unless options need the tests on this machine.
+pub fn fill_submission(args: &mut RunVerbArgs, options: &ClusterOptions) -> Result<(), Failure> {
+    refuse_local_options(args, options.executor)?;
+    let count = rtf_executor::shards(options)?;
+    args.run.input.select.shard = Some(Shard { index: 1, count, by: ShardBy::Hash });
+    Ok(())
+}
+
 /// Refuses options that need the tests on this machine.
-pub fn refuse_local_options(args: &RunVerbArgs, executor: Executor) -> Result<(), Failure> {
+fn refuse_local_options(args: &RunVerbArgs, executor: Executor) -> Result<(), Failure> {
     let RunVerbArgs { run, debug, .. } = args;
     let refused = [
         ("--rerun", !run.input.select.rerun.is_empty()),

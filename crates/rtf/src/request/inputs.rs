@@ -4,29 +4,31 @@ use std::hash::{BuildHasher, Hasher, RandomState};
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use rtf_model::{Manifest, Record, Significance, TestRecord, Verdict};
+use rtf_model::Manifest;
 use rtf_plan::config::ConfigRequest;
 use rtf_plan::plan::{InputPath, Options, RunnerEnvironment};
-use rtf_plan::select::{Shard, TestOrder};
+use rtf_plan::select::TestOrder;
 use rtf_report::local_time;
 use rtf_run::error::Failure;
-use rtf_run::request::{PastQuery, TestsRequest, failed_cases, past_run};
+use rtf_run::request::rerun::{self, RerunVerdict};
+use rtf_run::request::{PastQuery, TestsRequest};
 
-use crate::cli::{FlakyResult, InputArgs, OrderOption, ProfileArgs, RepeatArgs, RerunVerdict};
+use crate::cli::{FlakyResult, InputArgs, OrderOption, ProfileArgs, RepeatArgs, RerunOption};
 
 /// Resolves the arguments, and reads the past runs that they name.
 pub fn tests(args: &InputArgs) -> Result<TestsRequest, Failure> {
-    tests_in_shard(args, args.select.shard.clone())
-}
-
-/// As [`tests`], for a shard that is not in the arguments.
-pub fn tests_in_shard(args: &InputArgs, shard: Option<Shard>) -> Result<TestsRequest, Failure> {
     let mut runner = RunnerEnvironment::from_current_process().map_err(Failure::internal)?;
     let results = &args.results.results;
     let mut manifest = if args.select.rerun.is_empty() {
         manifest(args)?
     } else {
-        let (manifest, working_dir) = rerun_manifest(args, results)?;
+        let run = past_run(&args.inputs)?;
+        let verdicts: Vec<_> = args.select.rerun.iter().map(|verdict| verdict.selected()).collect();
+        let (mut manifest, working_dir) = rerun::manifest(results, &run, &verdicts)?;
+        if let Some(profile) = &args.profile.profile {
+            manifest.profile = Some(profile.clone());
+        }
+        manifest.set.extend(settings(&args.profile));
         runner.current_dir = working_dir;
         manifest
     };
@@ -50,10 +52,11 @@ pub fn tests_in_shard(args: &InputArgs, shard: Option<Shard>) -> Result<TestsReq
     };
     let mut warnings = Vec::new();
     let order = order.map(|(order, _)| past.order(order, &mut warnings)).transpose()?.flatten();
+    let shard = args.select.shard.clone();
     let shard = shard.map(|shard| past.assign(shard, &args.select.shard_by)).transpose()?;
     manifest.shard = shard.as_ref().map(|(it, _)| format!("{}/{}", it.index, it.count));
     let inputs = manifest.inputs.iter().map(|input| InputPath::Any(input.into())).collect();
-    let options = options(&manifest, runner);
+    let options = plan_options(&manifest, runner);
     Ok(TestsRequest { order, shard, warnings, ..TestsRequest::new(inputs, options, manifest) })
 }
 
@@ -66,7 +69,7 @@ pub fn tests_of_suite(suite: &Path, profile: &ProfileArgs) -> Result<TestsReques
         set: settings(profile),
         ..Manifest::default()
     };
-    let options = options(&manifest, runner);
+    let options = plan_options(&manifest, runner);
     Ok(TestsRequest::new(vec![InputPath::Suite(suite.to_owned())], options, manifest))
 }
 
@@ -95,83 +98,23 @@ fn settings(args: &ProfileArgs) -> Vec<String> {
     args.set.iter().map(|(name, value)| format!("{name}={value}")).collect()
 }
 
-/// The manifest of a past run, restricted to the tests to rerun, and its working
-/// directory.
-fn rerun_manifest(args: &InputArgs, results: &Path) -> Result<(Manifest, PathBuf), Failure> {
-    let run = match args.inputs.as_slice() {
-        [] => "latest".to_owned(),
-        [run] => run.to_string_lossy().into_owned(),
+/// The run that `--rerun` repeats.
+fn past_run(inputs: &[PathBuf]) -> Result<String, Failure> {
+    match inputs {
+        [] => Ok("latest".to_owned()),
+        [run] => Ok(run.to_string_lossy().into_owned()),
         [_, second, ..] => {
             let error = format!("`--rerun` takes one run, `{}` is too many", second.display());
-            return Err(Failure::input(error));
+            Err(Failure::input(error))
         }
-    };
-    let record =
-        past_run::read(results, &run).map_err(|failure| match Path::new(&run).is_file() {
-            true => failure.hint("with `--rerun`, FILE is a past run or its journal"),
-            false => failure,
-        })?;
-    let Some(started) = &record.run else {
-        return Err(Failure::input(format!("the journal of `{run}` has no first event")));
-    };
-    if started.manifest.inputs.is_empty() {
-        let error = format!("`{run}` does not record its inputs");
-        let hint = "it comes from an older rtf, from `robottestingframework-testrunner`, or from \
-                    `rtf merge` of runs with different inputs";
-        return Err(Failure::input(error).hint(hint));
     }
-    let (only, only_cases) = tests_to_rerun(&record, &run, &args.select.rerun)?;
-    let mut manifest = Manifest { only: Some(only), only_cases, ..(*started.manifest).clone() };
-    if let Some(profile) = &args.profile.profile {
-        manifest.profile = Some(profile.clone());
-    }
-    manifest.set.extend(settings(&args.profile));
-    Ok((manifest, PathBuf::from(&started.working_dir)))
 }
 
-/// Suite and test of each test to rerun; and suite, test and paths of failed cases.
-type TestsToRerun = (Vec<(String, String)>, Vec<(String, String, Vec<String>)>);
-
-/// The tests to rerun, and the cases of those of which only some cases failed.
-fn tests_to_rerun(
-    record: &Record,
-    run: &str,
-    verdicts: &[RerunVerdict],
-) -> Result<TestsToRerun, Failure> {
-    let (mut names, mut cases) = (Vec::new(), Vec::new());
-    for test in &record.tests {
-        if !verdicts.iter().any(|wanted| wanted.matches(record, test)) {
-            continue;
-        }
-        let Some((suite, test_name)) = past_run::names(record, test) else { continue };
-        if let Some(paths) = failed_cases(test) {
-            cases.push((suite.clone(), test_name.clone(), paths));
-        }
-        names.push((suite, test_name));
-    }
-    if names.is_empty() {
-        let verdicts: Vec<_> = verdicts.iter().map(|wanted| wanted.verb()).collect();
-        let error = format!("no test of `{run}` {}: nothing to rerun", verdicts.join(" or "));
-        return Err(Failure::input(error));
-    }
-    Ok((names, cases))
-}
-
-impl RerunVerdict {
-    fn matches(self, record: &Record, test: &TestRecord) -> bool {
-        let skipped_itself = test.significance() == Significance::SkippedItself;
-        let interrupted = !skipped_itself
-            && matches!(test.final_verdict(), Verdict::Interrupted | Verdict::Skipped);
+impl RerunOption {
+    fn selected(self) -> RerunVerdict {
         match self {
-            Self::Failed => !record.is_test_green(test) && !interrupted,
-            Self::Interrupted => interrupted,
-        }
-    }
-
-    fn verb(self) -> &'static str {
-        match self {
-            Self::Failed => "failed",
-            Self::Interrupted => "was interrupted or skipped",
+            Self::Failed => RerunVerdict::Failed,
+            Self::Interrupted => RerunVerdict::Interrupted,
         }
     }
 }
@@ -192,7 +135,7 @@ fn set_repetition(manifest: &mut Manifest, args: &RepeatArgs) {
     }
 }
 
-fn options(manifest: &Manifest, runner: RunnerEnvironment) -> Options {
+fn plan_options(manifest: &Manifest, runner: RunnerEnvironment) -> Options {
     let set = manifest.set.iter().filter_map(|text| text.split_once('='));
     let params = set.map(|(name, value)| (name.to_owned(), value.to_owned())).collect();
     Options {

@@ -210,7 +210,7 @@ fn describe(
 
 /// The jobs, if the episodes are to run in a cluster.
 fn jobs(args: &CampaignRunArgs, plan: &Plan) -> Result<Option<CampaignJobs>, Failure> {
-    let options = request::cluster::cluster(&args.cluster)?;
+    let options = request::cluster::options(&args.cluster)?;
     if options.executor == Executor::Local {
         return Ok(None);
     }

@@ -1,0 +1,68 @@
+//! The arguments of `rtf run`, read once, from top to bottom.
+
+use std::borrow::Cow;
+
+use clap::ArgMatches;
+use rtf_executor::{ClusterOptions, CollectRequest, Executor, Submission};
+use rtf_run::error::Failure;
+use rtf_run::request::TestsRequest;
+
+use super::local_run::{self, LocalRun};
+use super::{cluster, config, inputs, output};
+use crate::cli::RunVerbArgs;
+
+/// What `rtf run` does.
+pub enum RunVerbRequest {
+    /// Runs tests on this machine.
+    Local(Box<LocalRun>),
+    /// Submits tests to a cluster.
+    Submission(Box<SubmissionRequest>),
+    /// Follows and merges an earlier submission.
+    Resumed(Box<Submission>, CollectRequest),
+}
+
+/// Tests for a cluster.
+pub struct SubmissionRequest {
+    pub options: ClusterOptions,
+    /// The tests, in shards.
+    pub tests: TestsRequest,
+    pub collect: CollectRequest,
+}
+
+/// Resolves the arguments.
+pub fn resolve(args: RunVerbArgs, matches: &ArgMatches) -> Result<RunVerbRequest, Failure> {
+    let stored = args.executor.resume.then(|| cluster::reopen(&args.run.input.inputs));
+    let (resumed, mut args, matches) = match stored.transpose()? {
+        Some((submission, args, matches)) => (Some(submission), args, Cow::Owned(matches)),
+        None => (None, args, Cow::Borrowed(matches)),
+    };
+    config::fill_run(&mut args.run, &matches)?;
+    let options = cluster::options(&args.executor.cluster)?;
+    let is_local = options.executor == Executor::Local || args.executor.array_task.is_some();
+    match &args.executor.array_task {
+        Some(task) => cluster::fill_task(task, &mut args.run, &options)?,
+        None if !is_local => cluster::fill_submission(&mut args, &options)?,
+        None => {}
+    }
+    let debug = local_run::debug(&args.debug, &args.run)?;
+    let output = output::output(&args.run, debug.is_some());
+    let targets = output::targets(&args.run, debug.is_some())?;
+    let args = args.run;
+    if is_local {
+        let run = LocalRun::new(args, debug, (output, targets))?;
+        return Ok(RunVerbRequest::Local(Box::new(run)));
+    }
+    let collect = CollectRequest {
+        output,
+        targets,
+        symlink: args.symlink,
+        shutdown_timeout: args.shutdown_timeout,
+    };
+    Ok(match resumed {
+        Some(submission) => RunVerbRequest::Resumed(Box::new(submission), collect),
+        None => {
+            let tests = inputs::tests(&args.input)?;
+            RunVerbRequest::Submission(Box::new(SubmissionRequest { options, tests, collect }))
+        }
+    })
+}
