@@ -1,4 +1,7 @@
 //! A worker: `rtf run` with a list of episodes, in a separate process with a guard and a journal.
+//!
+//! It is started by a command line, not by a request: it resolves `rtf.toml`, the environment and
+//! the terminal on the machine where it runs, which may be a node of a cluster.
 
 use std::ffi::{OsStr, OsString};
 use std::fs::File;

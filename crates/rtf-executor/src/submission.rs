@@ -34,7 +34,8 @@ pub struct Submission {
 pub struct Stored {
     /// The name of the job.
     pub name: String,
-    /// The arguments of `rtf run`.
+    /// The arguments of `rtf run`, as the user typed them: `--resume` and each task, on its machine,
+    /// resolve them, and the scheduler shows them.
     pub args: Vec<String>,
     /// The working directory of `rtf run`.
     pub working_dir: String,

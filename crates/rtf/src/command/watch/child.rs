@@ -1,4 +1,7 @@
 //! Starts a run: this program with the same options, as `rtf run`.
+//!
+//! The arguments are those that the user typed, not a request: each run reads `rtf.toml` and the
+//! files that the arguments name as they are then.
 
 use std::ffi::OsString;
 use std::io;
