@@ -1,22 +1,18 @@
-#!/usr/bin/env python3
-"""Runs the CTest tests of suites: one run of a suite has the results for all its tests.
-
-    check.py RTF CMAKE DIRECTORY
-
-CMAKE contains the CMake package `rtf`. The project is built in DIRECTORY.
-"""
+"""Runs the CTest tests of suites: one run of a suite has the results for all its tests."""
 
 from __future__ import annotations
 
 import os
 import re
-import shutil
 import subprocess
-import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
-ROOT = Path(__file__).resolve().parents[2]
+import pytest
+from checkout import ROOT, call
+from run import expect
+
+pytestmark = pytest.mark.usefixtures("rtf")
 RESULT = re.compile(r"Test +#\d+: (\S+) \.* *(?:\*\*\*)?([A-Z][A-Za-z ]*?) +[\d.]+ sec")
 GREEN = {
     "arm": "Passed",
@@ -27,15 +23,6 @@ GREEN = {
     "arm:suite": "Passed",
 }
 BROKEN = dict.fromkeys(GREEN, "Not Run") | {"arm": "Failed", "arm:suite": "Failed"}
-
-problems: list[str] = []
-
-
-def check(what: str, got: object, expected: object) -> None:
-    """Prints a comparison and keeps a difference."""
-    print(f"{'ok' if got == expected else 'DIFFERENT'}: {what}: {got}", flush=True)
-    if got != expected:
-        problems.append(f"{what}: got {got}, expected {expected}")
 
 
 class Build:
@@ -73,85 +60,81 @@ class Build:
         return tuple(root.attrib[name] for name in ("tests", "failures", "errors", "skipped"))
 
 
-def main() -> int:
-    """Prints all differences; the exit code is 1 if there is any."""
-    rtf, cmake, directory = (Path(argument).resolve() for argument in sys.argv[1:4])
-    shutil.rmtree(directory, ignore_errors=True)
-    project = Path(__file__).parent / "project"
-    configure = ["cmake", "-S", str(project), "-B", str(directory), f"-Drtf_DIR={cmake}"]
-    subprocess.run(configure, check=True)
-    build = Build(directory)
-    check_results(build)
-    check_selection(build)
-    check_suite(build)
-    check_no_stale_results(build)
-    check_separate_runs(build)
-    check_adapter(str(rtf), build)
-    for problem in problems:
-        print(f"different: {problem}")
-    return 1 if problems else 0
+@pytest.fixture
+def build(tmp_path: Path) -> Build:
+    """A configured project."""
+    call(
+        "cmake",
+        "-S",
+        Path(__file__).parent / "project",
+        "-B",
+        tmp_path,
+        f"-Drtf_DIR={ROOT}/sdk/cpp/cmake/rtf",
+    )
+    return Build(tmp_path)
 
 
-def check_results(build: Build) -> None:
+def test_each_test_has_its_own_result_and_the_suite_runs_once(build: Build) -> None:
     """Each test has its own result, and the suite runs once."""
-    check("green", build.ctest("-j4", "-R", "^arm"), GREEN)
-    check("starts of the fixture", build.lines("starts.txt"), 1)
+    expect("green", build.ctest("-j4", "-R", "^arm"), GREEN)
+    expect("starts of the fixture", build.lines("starts.txt"), 1)
     # With a run of the hook; the known failure counts as skipped.
-    check("report", build.junit(), ("5", "0", "0", "1"))
+    expect("report", build.junit(), ("5", "0", "0", "1"))
     red = {"ARM_MOVE": "fail", "ARM_GRIP": "crash", "ARM_TOUCH": "skip"}
     expected = GREEN | {"arm/Move": "Failed", "arm/Grip": "Failed", "arm/Touch": "Skipped"}
-    check("red", build.ctest("-j4", "-R", "^arm", **red), expected)
-    check("red report", build.junit(), ("7", "1", "1", "2"))
+    expect("red", build.ctest("-j4", "-R", "^arm", **red), expected)
+    expect("red report", build.junit(), ("7", "1", "1", "2"))
     for text in ("the arm is bent", "the arm moves", "exit code 3"):
-        check(f"`{text}` is printed", text in build.printed, True)
+        expect(f"`{text}` is printed", text in build.printed, True)
 
 
-def check_selection(build: Build) -> None:
-    """`--rerun-failed` follows the red run; CTest adds the run of the suite to a selection."""
+def test_ctest_adds_the_run_of_the_suite_to_a_selection(build: Build) -> None:
+    build.ctest("-j4", "-R", "^arm", ARM_MOVE="fail", ARM_GRIP="crash", ARM_TOUCH="skip")
     rerun = dict.fromkeys(("arm", "arm/Move", "arm/Grip", "arm:suite"), "Passed")
-    check("rerun", build.ctest("--rerun-failed"), rerun)
+    expect("rerun", build.ctest("--rerun-failed"), rerun)
     only = dict.fromkeys(("arm", "arm/Grip", "arm:suite"), "Passed")
-    check("one test", build.ctest("-R", "^arm/Grip$"), only)
-    check("starts for one test", build.lines("starts.txt"), 1)
+    expect("one test", build.ctest("-R", "^arm/Grip$"), only)
+    expect("starts for one test", build.lines("starts.txt"), 1)
     by_label = dict.fromkeys(("arm", "arm/Move", "arm:suite"), "Passed")
-    check("by label", build.ctest("-R", "^arm/", "-L", "quick"), by_label)
+    expect("by label", build.ctest("-R", "^arm/", "-L", "quick"), by_label)
 
 
-def check_suite(build: Build) -> None:
+def test_what_is_no_result_of_a_test_is_red(build: Build) -> None:
     """What is no result of a test is red, too."""
     red = build.ctest("-R", "^arm", ARM_MOVE="fail", ARM_PARK="1")
-    check("failed hook", red, GREEN | {"arm/Move": "Failed", "arm:suite": "Failed"})
+    expect("failed hook", red, GREEN | {"arm/Move": "Failed", "arm:suite": "Failed"})
     stopped = build.ctest("-R", "^limited", ARM_GRIP="hang")
     expected = {name.replace("arm", "limited"): result for name, result in BROKEN.items()}
-    check("time-out", stopped, expected)
-    check("the hook ran after the time-out", build.lines("parked.txt"), 1)
-    check("broken suite", build.ctest("-R", "^broken"), {"broken": "Failed"})
-    check("its reason", "Missing.lua" in build.printed, True)
+    expect("time-out", stopped, expected)
+    expect("the hook ran after the time-out", build.lines("parked.txt"), 1)
+    expect("broken suite", build.ctest("-R", "^broken"), {"broken": "Failed"})
+    expect("its reason", "Missing.lua" in build.printed, True)
 
 
-def check_no_stale_results(build: Build) -> None:
+def test_results_of_an_earlier_run_are_not_those_of_this_one(build: Build) -> None:
     """The results of an earlier run are not those of this one."""
-    check("killed", build.ctest("-R", "^arm", ARM_GRIP="kill"), BROKEN)
-    check("report of the killed run", build.junit(), ("1", "0", "1", "0"))
-    check("green after that", build.ctest("-R", "^arm"), GREEN)
+    build.ctest("-R", "^arm")
+    expect("killed", build.ctest("-R", "^arm", ARM_GRIP="kill"), BROKEN)
+    expect("report of the killed run", build.junit(), ("1", "0", "1", "0"))
+    expect("green after that", build.ctest("-R", "^arm"), GREEN)
     without_run = {"arm/Move": "Failed", "arm:suite": "Failed"}
-    check("without the run", build.ctest("-R", "^arm/Move$", "-FS", "."), without_run)
+    expect("without the run", build.ctest("-R", "^arm/Move$", "-FS", "."), without_run)
     repeated = build.ctest(
         "-R", "^arm/Move$", "--repeat", "until-fail:3", ARM_MOVE="fail second time"
     )
-    check("repeated", repeated.get("arm/Move"), "Failed")
-    check("runs until the failure", build.lines("starts.txt"), 2)
+    expect("repeated", repeated.get("arm/Move"), "Failed")
+    expect("runs until the failure", build.lines("starts.txt"), 2)
 
 
-def check_separate_runs(build: Build) -> None:
+def test_a_test_with_separate_runs_has_its_own_fixtures(build: Build) -> None:
     """With SEPARATE_RUNS, each test is a run with its own fixtures."""
     names = [name.replace("arm/", "separate/") for name in GREEN if "/" in name]
     expected = dict.fromkeys(names, "Passed") | {"separate/Grip": "Failed"}
-    check("separate runs", build.ctest("-j2", "-R", "^separate", ARM_GRIP="fail"), expected)
-    check("starts in separate runs", build.lines("starts.txt"), 4)
+    expect("separate runs", build.ctest("-j2", "-R", "^separate", ARM_GRIP="fail"), expected)
+    expect("starts in separate runs", build.lines("starts.txt"), 4)
 
 
-def check_adapter(rtf: str, build: Build) -> None:
+def test_a_suite_of_type_ctest_runs_the_same_tests(rtf: str, build: Build) -> None:
     """A suite with a test of type `ctest` runs the same tests."""
     suite = build.directory / "all.xml"
     suite.write_text('<suite><test type="ctest" cases="arm*"> . </test></suite>\n')
@@ -159,8 +142,4 @@ def check_adapter(rtf: str, build: Build) -> None:
     for behaviour, code in (("", 0), ("fail", 1)):
         variables = os.environ | {"ARM_MOVE": behaviour, "ARM_DIR": str(build.directory)}
         ran = subprocess.run(command, cwd=build.directory, env=variables, check=False)
-        check(f"rtf run with `{behaviour}`", ran.returncode, code)
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        expect(f"rtf run with `{behaviour}`", ran.returncode, code)

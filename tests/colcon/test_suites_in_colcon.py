@@ -1,11 +1,4 @@
-#!/usr/bin/env python3
-"""Builds and tests a colcon workspace whose packages have suites.
-
-    check.py RTF CMAKE DIRECTORY
-
-`colcon` and Debian's ament are installed. CMAKE contains the CMake package `rtf`. The
-workspace is built in DIRECTORY.
-"""
+"""Builds and tests a colcon workspace whose packages have suites."""
 
 from __future__ import annotations
 
@@ -15,22 +8,15 @@ import re
 import shutil
 import signal
 import subprocess
-import sys
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parents[2]
+import pytest
+from checkout import ROOT, need_packages, venv
+from run import expect
+
 # ament needs the Python for which Debian's packages are installed.
 CMAKE_ARGS = ["--cmake-args", "-DPython3_EXECUTABLE=/usr/bin/python3"]
-
-problems: list[str] = []
-
-
-def check(what: str, got: object, expected: object) -> None:
-    """Prints a comparison and keeps a difference."""
-    print(f"{'ok' if got == expected else 'DIFFERENT'}: {what}: {got}", flush=True)
-    if got != expected:
-        problems.append(f"{what}: got {got}, expected {expected}")
 
 
 class Counts(NamedTuple):
@@ -45,14 +31,14 @@ class Counts(NamedTuple):
 class Workspace:
     """A workspace in which `colcon` runs."""
 
-    def __init__(self, directory: Path) -> None:
-        self.directory = directory
+    def __init__(self, directory: Path, environment: dict[str, str]) -> None:
+        self.directory, self.environment = directory, environment
         self.starts = directory / "starts.txt"
 
     def colcon(self, *arguments: str, **variables: str) -> tuple[int, str]:
         """The exit code of a command and what it prints."""
         self.starts.write_text("")
-        environment = os.environ | {"ARM_STARTS": str(self.starts)} | variables
+        environment = self.environment | {"ARM_STARTS": str(self.starts)} | variables
         ran = subprocess.run(
             ["colcon", "--log-level", "error", *arguments],
             cwd=self.directory,
@@ -87,75 +73,77 @@ class Workspace:
                 os.kill(int(process), signal.SIGTERM)
 
 
-def main() -> int:
-    """Prints all differences; the exit code is 1 if there is any."""
-    rtf, cmake, directory = (Path(argument).resolve() for argument in sys.argv[1:4])
-    shutil.rmtree(directory, ignore_errors=True)
+@pytest.fixture(scope="module")
+def workspace(rtf: str, tmp_path_factory: pytest.TempPathFactory) -> Workspace:
+    """The workspace, which is built."""
+    need_packages("ament-cmake", "cmake", "g++")
+    directory = tmp_path_factory.mktemp("colcon") / "workspace"
     shutil.copytree(Path(__file__).parent / "workspace", directory)
     (directory / "src/ament_cmake_rtf").symlink_to(ROOT / "packaging/ament/ament_cmake_rtf")
-    os.environ |= {"rtf_DIR": str(cmake), "PATH": f"{rtf.parent}:{os.environ['PATH']}"}
-    workspace = Workspace(directory)
-    check("build", workspace.colcon("build", *CMAKE_ARGS)[0], 0)
-    check_green(workspace)
-    check_red(workspace)
-    check_killed(workspace)
-    check_import(str(rtf), directory)
-    for problem in problems:
-        print(f"different: {problem}")
-    return 1 if problems else 0
+    colcon = venv("colcon")
+    environment = {name: it for name, it in os.environ.items() if not name.startswith("PYTEST_")}
+    environment |= {
+        "rtf_DIR": f"{ROOT}/sdk/cpp/cmake/rtf",
+        "RTF_PYTHON": str(colcon / "python"),
+        "PATH": f"{Path(rtf).parent}:{colcon}:{os.environ['PATH']}",
+    }
+    workspace = Workspace(directory, environment)
+    expect("build", workspace.colcon("build", *CMAKE_ARGS)[0], 0)
+    return workspace
 
 
-def check_green(workspace: Workspace) -> None:
+def test_suites_are_tests_of_packages_and_fixtures_start_once_for_each_run(
+    workspace: Workspace,
+) -> None:
     """All suites pass, and fixtures start once for each run of a suite."""
-    check("test", workspace.test(), 0)
-    check("starts of the fixture", workspace.fixture_starts(), 3)
+    expect("test", workspace.test(), 0)
+    expect("starts of the fixture", workspace.fixture_starts(), 3)
     code, files = workspace.results()
-    check("test-result", code, 0)
-    check("results of arm", files.get("arm.xunit"), Counts(3, 0, 0, 0))
-    check("results of each", files.get("each.xunit"), Counts(3, 0, 0, 0))
-    check("results of CTest", files.get("Test"), Counts(6, 0, 0, 0))
-    check("results of arm_sim", files.get("pytest"), Counts(1, 0, 0, 0))
+    expect("test-result", code, 0)
+    expect("results of arm", files.get("arm.xunit"), Counts(3, 0, 0, 0))
+    expect("results of each", files.get("each.xunit"), Counts(3, 0, 0, 0))
+    expect("results of CTest", files.get("Test"), Counts(6, 0, 0, 0))
+    expect("results of arm_sim", files.get("pytest"), Counts(1, 0, 0, 0))
 
 
-def check_red(workspace: Workspace) -> None:
+def test_results_are_counted_by_colcon(workspace: Workspace) -> None:
     """A test that fails, one that crashes, and one that skips itself."""
     variables = {"ARM_MOVE": "fail", "ARM_GRIP": "crash", "ARM_TOUCH": "skip"}
     only = ["--packages-select", "arm_driver"]
-    check("red test", workspace.test(*only, **variables), 1)
+    expect("red test", workspace.test(*only, **variables), 1)
     code, files = workspace.results()
-    check("red test-result", code, 1)
-    check("red results of arm", files.get("arm.xunit"), Counts(3, 1, 1, 1))
-    check("red results of each", files.get("each.xunit"), Counts(3, 1, 1, 1))
+    expect("red test-result", code, 1)
+    expect("red results of arm", files.get("arm.xunit"), Counts(3, 1, 1, 1))
+    expect("red results of each", files.get("each.xunit"), Counts(3, 1, 1, 1))
     # `arm`, `each/Move` and `each/Grip`
-    check("red results of CTest", files.get("Test"), Counts(6, 0, 3, 1))
-    check("test after red", workspace.test(*only), 0)
+    expect("red results of CTest", files.get("Test"), Counts(6, 0, 3, 1))
+    expect("test after red", workspace.test(*only), 0)
 
 
-def check_killed(workspace: Workspace) -> None:
+def test_results_of_an_earlier_run_do_not_remain_if_the_runner_is_killed(
+    workspace: Workspace,
+) -> None:
     """The runner and its guard are killed: the results of the run before do not remain."""
-    check("killed", workspace.test("--packages-select", "arm_driver", ARM_GRIP="kill"), 1)
+    workspace.test("--packages-select", "arm_driver")
+    expect("killed", workspace.test("--packages-select", "arm_driver", ARM_GRIP="kill"), 1)
     # Nothing is left that could stop them.
     workspace.end_fixtures()
     code, files = workspace.results()
-    check("test-result of the killed run", code, 1)
+    expect("test-result of the killed run", code, 1)
     for name in ("arm", "each"):
-        check(f"killed results of {name}", files.get(f"{name}.xunit"), Counts(1, 1, 0, 0))
+        expect(f"killed results of {name}", files.get(f"{name}.xunit"), Counts(1, 1, 0, 0))
 
 
-def check_import(rtf: str, directory: Path) -> None:
-    """`rtf import colcon` prints how to run the suites of the packages."""
+def test_import_prints_how_to_run_the_suites_of_packages(rtf: str, workspace: Workspace) -> None:
+    directory = workspace.directory
     command = [rtf, "import", "colcon", str(directory), "--output", str(directory / "suite.xml")]
     printed = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout
     print(printed)
     lines = [line for line in printed.splitlines() if line.startswith("next: ")]
     suites = [line for line in lines if not line.endswith("suite.xml")]
-    check("suites to run next", len(suites), 2)
+    expect("suites to run next", len(suites), 2)
     for line in suites:
         next_command = f"cd {directory} && {line.removeprefix('next: ')}"
-        variables = os.environ | {"ARM_LIST": "ab"}
+        variables = workspace.environment | {"ARM_LIST": "ab"}
         ran = subprocess.run(["bash", "-c", next_command], env=variables, check=False)
-        check(line, ran.returncode, 0)
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        expect(line, ran.returncode, 0)

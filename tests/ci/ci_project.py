@@ -1,25 +1,35 @@
-"""A project with robot tests, and a package index that contains rtf."""
+"""Executes the shell steps of the CI helpers in packaging/ as their systems do.
 
+What the systems themselves do between the steps is replaced: the checkout, artefacts and stashes
+are copies of directories. `pip install` is real; the package is a wheel that starts `rtf`.
+"""
+
+import json
 import os
 import shutil
 import subprocess
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+from checkout import ROOT, output_of, venv
 
 PASSES = "TestCase = {}\nfunction TestCase.run() rtf.check(true, 'fine') end\n"
 FAILS = (
     "TestCase = {}\nfunction TestCase.run()\n"
     "  rtf.check(false, 'the <brake> is open')\n  rtf.measure('angle', 2.5, 'rad', 1, 2)\nend\n"
 )
+PACKAGING = ROOT / "packaging"
 # Enough tests that none of three shards is empty.
 NUMBER_OF_TESTS = 12
 NAME = "robot_testing_framework"
 VERSION = "0.1.0"
 
 
-def make_wheel(wheels: Path, rtf: Path) -> Path:
-    """Make a package whose program `rtf` is the one that is tested."""
+def make_project(rtf: str, base: Path) -> "Project":
+    """Make an index with a package whose program `rtf` is the one that is tested."""
+    wheels = base / "wheels"
     wheels.mkdir()
     info = f"{NAME}-{VERSION}.dist-info"
     files = {
@@ -33,7 +43,7 @@ def make_wheel(wheels: Path, rtf: Path) -> Path:
             entry = zipfile.ZipInfo(name)
             entry.external_attr = 0o100755 << 16
             wheel.writestr(entry, text)
-    return wheels
+    return Project(base, wheels, rtf)
 
 
 @dataclass
@@ -42,7 +52,7 @@ class Project:
 
     base: Path
     wheels: Path
-    rtf: Path
+    rtf: str
 
     def checkout(self, name: str) -> Path:
         """Make a fresh checkout for a job."""
@@ -83,14 +93,14 @@ def run(command: list[str], directory: Path, environment: dict[str, str], expect
         check=False,
     )
     said = f"{' '.join(command)}\n{result.stdout}"
-    check(result.returncode == expected, f"exit code {result.returncode}, not {expected}: {said}")
+    assert result.returncode == expected, f"exit code {result.returncode}, not {expected}: {said}"
     return result.stdout
 
 
-def check(holds: bool, text: str) -> None:
-    """End with an explanation unless the condition holds."""
-    if not holds:
-        raise SystemExit(f"FAILED: {text}")
+def load_yaml(file: Path) -> Any:
+    """Read a file with the library of a separate environment."""
+    script = "import json, sys, yaml; print(json.dumps(yaml.safe_load(open(sys.argv[1]))))"
+    return json.loads(output_of(venv("ci") / "python", "-c", script, file))
 
 
 def copy_artefact(source: Path, target: Path) -> None:
@@ -101,7 +111,7 @@ def copy_artefact(source: Path, target: Path) -> None:
 def check_merged(summary: str) -> None:
     """Check the summary of all tests."""
     start = f"## ❌ FAILED\n\n{NUMBER_OF_TESTS} tests in 1 suite, "
-    check(summary.startswith(start), f"the summary is of another run: {summary}")
-    check(f": {NUMBER_OF_TESTS - 1} passed, 1 failed" in summary, summary)
-    check("the &#60;brake&#62; is open" in summary, summary)
-    check("| ❌ outside |" in summary, summary)
+    assert summary.startswith(start), f"the summary is of another run: {summary}"
+    assert f": {NUMBER_OF_TESTS - 1} passed, 1 failed" in summary, summary
+    assert "the &#60;brake&#62; is open" in summary, summary
+    assert "| ❌ outside |" in summary, summary

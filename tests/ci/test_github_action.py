@@ -7,8 +7,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import yaml  # type: ignore[import-untyped]
-from project import NUMBER_OF_TESTS, Project, check, check_merged, run
+import pytest
+from checkout import call
+from ci_project import (
+    NUMBER_OF_TESTS,
+    PACKAGING,
+    Project,
+    check_merged,
+    load_yaml,
+    make_project,
+    run,
+)
 
 EXPRESSION = re.compile(r"\$\{\{ *([^}]*?) *\}\}")
 LINK = "https://github.example/artifacts/"
@@ -44,7 +53,7 @@ class Job:
         if expression not in self.values and not re.fullmatch(
             r"steps\.\w+\.outputs\.[\w-]+", expression
         ):
-            raise SystemExit(f"FAILED: the expression `{expression}` has no value")
+            raise AssertionError(f"the expression `{expression}` has no value")
         return self.values.get(expression, "")
 
     def is_skipped(self, step: dict[str, Any]) -> bool:
@@ -73,8 +82,8 @@ class Job:
         used = step["uses"].split("@")[0]
         if used == "./packaging/action":
             inputs = {name: str(known["default"]) for name, known in self.action["inputs"].items()}
-            check(arguments.keys() <= inputs.keys(), f"unknown inputs: {arguments}")
-            inputs |= {"rtf-path": str(self.project.rtf.parent)} | arguments
+            assert arguments.keys() <= inputs.keys(), f"unknown inputs: {arguments}"
+            inputs |= {"rtf-path": str(Path(self.project.rtf).parent)} | arguments
             self.values |= {f"inputs.{name}": value for name, value in inputs.items()}
             return self.steps(self.action["runs"]["steps"], expected)
         if used == "actions/upload-artifact":
@@ -85,7 +94,7 @@ class Job:
                 if fnmatch.fnmatch(artefact.name, arguments["pattern"]):
                     shutil.copytree(artefact, self.directory / arguments["path"] / artefact.name)
         else:
-            check(used == "actions/checkout", f"unknown action `{used}`")
+            assert used == "actions/checkout", f"unknown action `{used}`"
         return None
 
     def shell(self, step: dict[str, Any], expected: int) -> None:
@@ -115,8 +124,25 @@ class Job:
             self.values[f"steps.{step['id']}.outputs.{name}"] = value
 
 
-def check_action(project: Project, action: dict[str, Any]) -> None:
-    """Check the action alone: it installs, runs, uploads and writes the summary."""
+@pytest.fixture
+def project(rtf: str, tmp_path: Path) -> Project:
+    """A project with robot tests."""
+    return make_project(rtf, tmp_path)
+
+
+@pytest.fixture(scope="module")
+def action() -> dict[str, Any]:
+    """The action."""
+    return dict(load_yaml(PACKAGING / "action/action.yml"))
+
+
+def test_the_example_is_a_valid_workflow() -> None:
+    call("tools/actionlint.sh", PACKAGING / "action/example.yml")
+
+
+def test_the_action_installs_runs_uploads_and_writes_the_summary(
+    project: Project, action: dict[str, Any]
+) -> None:
 
     def job(name: str, status: int = 0, **inputs: str) -> Job:
         directory = project.checkout(name)
@@ -132,28 +158,28 @@ def check_action(project: Project, action: dict[str, Any]) -> None:
 
     installed = {"rtf-path": "", "version": "0.1.0"}
     failed = job("failed", 1, args="-r tests", **installed)
-    check("/rtf/bin\n" in failed.text("path"), "the package was installed")
+    assert "/rtf/bin\n" in failed.text("path"), "the package was installed"
     check_merged(failed.text("summary"))
-    check(f"[results](<{LINK}robot-tests>)" in failed.text("summary"), "the summary has a link")
-    check((failed.directory / "junit.xml").exists(), "the JUnit report")
-    check((failed.artefacts / "robot-tests" / "events.jsonl").exists(), "the artefact is the run")
+    assert f"[results](<{LINK}robot-tests>)" in failed.text("summary"), "the summary has a link"
+    assert (failed.directory / "junit.xml").exists(), "the JUnit report"
+    assert (failed.artefacts / "robot-tests" / "events.jsonl").exists(), "the artefact is the run"
 
     passed = job("passed", args="tests/arm.xml -E 'name(=Joint1) | name(=Joint2)'", junit="")
-    check(passed.text("summary").startswith("## ✅ PASSED\n\n2 tests "), passed.text("summary"))
-    check(not (passed.directory / "junit.xml").exists(), "no JUnit report")
+    assert passed.text("summary").startswith("## ✅ PASSED\n\n2 tests "), passed.text("summary")
+    assert not (passed.directory / "junit.xml").exists(), "no JUnit report"
 
     # The run of an earlier step is not that of a step that starts none.
     shutil.rmtree(passed.artefacts)
     again(passed, 2, args="tests/missing.xml")
-    check("rtf started no run" in passed.text("summary"), passed.text("summary"))
-    check(not passed.artefacts.exists(), "nothing is uploaded")
+    assert "rtf started no run" in passed.text("summary"), passed.text("summary")
+    assert not passed.artefacts.exists(), "nothing is uploaded"
     again(passed, 1, args="tests -E 'name(Joint1)")
     only = job("only")
-    check(only.text("summary") == "", "without arguments, nothing is run")
+    assert only.text("summary") == "", "without arguments, nothing is run"
 
 
-def check_workflow(project: Project, action: dict[str, Any], workflow: dict[str, Any]) -> None:
-    """Check the example: three shards, merged."""
+def test_the_example_merges_three_shards(project: Project, action: dict[str, Any]) -> None:
+    workflow = load_yaml(PACKAGING / "action/example.yml")
     artefacts = project.base / "artefacts"
     jobs = workflow["jobs"]
     failed = 0
@@ -162,26 +188,18 @@ def check_workflow(project: Project, action: dict[str, Any], workflow: dict[str,
         job = Job(project, project.checkout(f"shard-{shard}"), action, artefacts)
         job.values["matrix.shard"] = str(shard)
         output = run(
-            [str(project.rtf), "list", "-r", "tests", "--shard", f"{shard}/3"],
+            [project.rtf, "list", "-r", "tests", "--shard", f"{shard}/3"],
             job.directory,
             project.environment(),
         )
         status = int("Brake" in output)
         failed += status
         job.steps(jobs["test"]["steps"], {"Run the tests": status})
-    check(failed == 1, "one shard has the failed test")
-    check(len(list(artefacts.iterdir())) == len(shards), f"{NUMBER_OF_TESTS} tests fill all shards")
+    assert failed == 1, "one shard has the failed test"
+    assert len(list(artefacts.iterdir())) == len(shards), f"{NUMBER_OF_TESTS} tests fill all shards"
     merge = Job(project, project.checkout("merge"), action, artefacts)
     merge.steps(jobs["merge"]["steps"], {"Merge the shards": 1})
     check_merged(merge.text("summary"))
     shutil.rmtree(artefacts / "shard-2")
     lost = Job(project, project.checkout("lost"), action, artefacts)
     lost.steps(jobs["merge"]["steps"], {"Merge the shards": 2, "Write the summary": 2})
-
-
-def check_helper(packaging: Path, project: Project) -> None:
-    """Check the action and the workflow."""
-    action = yaml.safe_load((packaging / "action/action.yml").read_text())
-    workflow = yaml.safe_load((packaging / "action/example.yml").read_text())
-    check_action(project, action)
-    check_workflow(project, action, workflow)

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from project import Project, check, check_merged, copy_artefact, run
+from ci_project import PACKAGING, check_merged, copy_artefact, make_project, run
 
 STEP = re.compile(r"\bsh (?:'''(.*?)'''|'([^'\n]*)')", re.DOTALL)
 
@@ -11,14 +11,14 @@ STEP = re.compile(r"\bsh (?:'''(.*?)'''|'([^'\n]*)')", re.DOTALL)
 def shell_steps(text: str) -> list[str]:
     """Return the `sh` steps as Groovy reads them: a backslash joins two lines."""
     steps = [(long or short).replace("\\\n", "") for long, short in STEP.findall(text)]
-    check(all("\\" not in step for step in steps), "Groovy would replace a backslash")
+    assert all("\\" not in step for step in steps), "Groovy would replace a backslash"
     return steps
 
 
-def check_helper(packaging: Path, project: Project) -> None:
-    """Run the steps as Jenkins' agents do."""
-    steps = shell_steps((packaging / "jenkins/Jenkinsfile").read_text())
-    check(len(steps) == 4, f"install, shard, clean and merge, not {steps}")
+def test_shards_on_several_agents_are_merged(rtf: str, tmp_path: Path) -> None:
+    project = make_project(rtf, tmp_path)
+    steps = shell_steps((PACKAGING / "jenkins/Jenkinsfile").read_text())
+    assert len(steps) == 4, f"install, shard, clean and merge, not {steps}"
     install, shard, clean, merge = steps
 
     def shell(step: str, directory: Path, expected: int = 0, **variables: str) -> None:
@@ -40,10 +40,10 @@ def check_helper(packaging: Path, project: Project) -> None:
         # Installing is the same on all agents.
         (directory / ".rtf-venv").symlink_to(merged / ".rtf-venv")
         options = ["list", "-r", "tests", "--shard", f"{number}/2"]
-        listed = run([str(project.rtf), *options], directory, project.environment())
+        listed = run([project.rtf, *options], directory, project.environment())
         for _build in range(2):
             shell(shard, directory, int("Brake" in listed), SHARD=number, SHARDS="2")
         copy_artefact(directory / "shards", merged / "shards")
     shell(merge, merged, 1)
     check_merged((merged / "summary.md").read_text())
-    check((merged / "junit.xml").stat().st_size > 0, "the JUnit report")
+    assert (merged / "junit.xml").stat().st_size > 0, "the JUnit report"

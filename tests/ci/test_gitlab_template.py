@@ -3,8 +3,15 @@
 from pathlib import Path
 from typing import Any
 
-import yaml  # type: ignore[import-untyped]
-from project import Project, check_merged, copy_artefact, run
+from ci_project import (
+    PACKAGING,
+    Project,
+    check_merged,
+    copy_artefact,
+    load_yaml,
+    make_project,
+    run,
+)
 
 
 def resolve(templates: dict[str, Any], name: str) -> dict[str, Any]:
@@ -29,9 +36,9 @@ def run_job(
     run(["bash", str(script)], directory, environment, expected)
 
 
-def check_helper(packaging: Path, project: Project) -> None:
-    """Check a single job, and two shards that are merged."""
-    templates = yaml.safe_load((packaging / "gitlab/rtf.yml").read_text())
+def test_a_job_runs_all_tests_and_shards_are_merged(rtf: str, tmp_path: Path) -> None:
+    project = make_project(rtf, tmp_path)
+    templates = load_yaml(PACKAGING / "gitlab/rtf.yml")
     single = project.checkout("single")
     run_job(project, resolve(templates, ".rtf"), single, 1, RTF_ARGS="-r tests")
     check_merged((single / "summary.md").read_text())
@@ -46,7 +53,7 @@ def check_helper(packaging: Path, project: Project) -> None:
     for number in range(1, count + 1):
         directory = project.checkout(f"shard-{number}")
         options = ["list", "-r", "tests", "--shard", f"{number}/{count}"]
-        listed = run([str(project.rtf), *options], directory, project.environment())
+        listed = run([project.rtf, *options], directory, project.environment())
         indices = {"CI_NODE_INDEX": str(number), "CI_NODE_TOTAL": str(count)}
         run_job(project, shard, directory, int("Brake" in listed), RTF_ARGS="-r tests", **indices)
         copy_artefact(directory / "shards", merge / "shards")
