@@ -1,42 +1,34 @@
-#!/usr/bin/env python3
 """Runs example 07 as a user does, and a second time while its simulator is killed.
 
-    check_example_07.py RTF DIRECTORY
-
-First all levels with `--jobs`; they share one robot, so they run one after the other. Then
-the stress level for a limited time, and the system level, during which the simulator gets a
-SIGKILL.
+The levels share one robot, so they run one after the other.
 """
 
 from __future__ import annotations
 
-import sys
-import tempfile
+import shutil
 from pathlib import Path
 
-from processes import kill, select
+import pytest
+from checkout import ROOT
+from processes import kill, running
 from run import Run, expect, expect_in, is_a
 
+pytestmark = pytest.mark.venv("demo")
+EXAMPLE = ROOT / "examples/07-levels"
 LEVELS = ["integration", "interface", "stress", "system"]
 SOAK = 10.0
 """Seconds; longer than the simulator's start and one round."""
 
 
-def main() -> int:
-    """Runs all; exits at the first difference."""
-    rtf, example = sys.argv[1], Path(sys.argv[2]).resolve()
-    rtf = str(Path(rtf).resolve())
-    with tempfile.TemporaryDirectory() as directory:
-        all_levels(rtf, example, Path(directory) / "all")
-        in_ci(rtf, example, Path(directory) / "ci")
-        repeated(rtf, example, Path(directory) / "repeated")
-        simulator_killed(rtf, example, Path(directory) / "killed")
-    return 0
+@pytest.fixture(autouse=True)
+def _private_locks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # Another test may use its own arm.
+    monkeypatch.setenv("RTF_LOCKS", str(tmp_path / "locks"))
 
 
-def all_levels(rtf: str, example: Path, directory: Path) -> None:
+def test_levels_share_one_arm(rtf: str, tmp_path: Path) -> None:
     """All tests pass; no two levels use the arm at the same time."""
-    run = Run(rtf, str(example), directory, "--jobs", "4")
+    run = Run(rtf, str(EXAMPLE), tmp_path / "results", "--jobs", "4")
     expect("exit code", run.wait(), 0)
     expect("verdicts", set(run.verdicts().values()), {"passed"})
     planned = [event["name"] for event in run.events("suite-planned")]
@@ -51,21 +43,21 @@ def all_levels(rtf: str, example: Path, directory: Path) -> None:
     expect("arms left", arms(), [])
 
 
-def in_ci(rtf: str, example: Path, directory: Path) -> None:
+def test_the_profile_of_ci_excludes_a_level(rtf: str, tmp_path: Path) -> None:
     """The profile excludes the stress level and writes a report."""
-    report = example / "junit.xml"
-    run = Run(rtf, str(example), directory, "--profile", "ci")
+    for lesson in ("01-simulated-arm", EXAMPLE.name):
+        shutil.copytree(EXAMPLE.parent / lesson, tmp_path / lesson)
+    copy = tmp_path / EXAMPLE.name
+    run = Run(rtf, str(copy), tmp_path / "results", "--profile", "ci")
     expect("exit code", run.wait(), 0)
     planned = {event["name"] for event in run.events("suite-planned")}
     expect("levels", planned, set(LEVELS) - {"stress"})
-    expect("report", report.exists(), True)
-    report.unlink()
+    expect("report", (copy / "junit.xml").exists(), True)
 
 
-def repeated(rtf: str, example: Path, directory: Path) -> None:
-    """Rounds of one suite fill the time with one start of the simulator."""
-    suite = str(example / "integration.xml")
-    run = Run(rtf, suite, directory, "--for", f"{SOAK:.0f}s", "--until-fail")
+def test_rounds_fill_the_time_with_one_start(rtf: str, tmp_path: Path) -> None:
+    suite = str(EXAMPLE / "integration.xml")
+    run = Run(rtf, suite, tmp_path / "results", "--for", f"{SOAK:.0f}s", "--until-fail")
     expect("exit code", run.wait(), 0)
     events = list(run.events())
     (rounds,) = [event["repetitions"] for event in events if is_a(event, "test-repeated")]
@@ -75,9 +67,8 @@ def repeated(rtf: str, example: Path, directory: Path) -> None:
     expect("arms left", arms(), [])
 
 
-def simulator_killed(rtf: str, example: Path, directory: Path) -> None:
-    """The task is rerun on a new simulator, and the run is green."""
-    run = Run(rtf, str(example / "system.xml"), directory)
+def test_a_collapsed_task_is_rerun_on_a_new_simulator(rtf: str, tmp_path: Path) -> None:
+    run = Run(rtf, str(EXAMPLE / "system.xml"), tmp_path / "results")
     run.disturb(lambda: kill(arms()), once="message")
     expect("exit code", run.wait(), 0)
     expect("attempts", run.attempts(), ["collapsed", "passed"])
@@ -86,14 +77,5 @@ def simulator_killed(rtf: str, example: Path, directory: Path) -> None:
 
 
 def arms() -> list[int]:
-    """The running simulators of this lesson, whose port `rtf` chose."""
-    return select(
-        lambda _, words, variables: (
-            "../01-simulated-arm/simulator.py" in words
-            and any(each.startswith("RTF_PORT_ARM=") for each in variables)
-        )
-    )
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    """The running simulators."""
+    return running("simulator.py")

@@ -1,10 +1,5 @@
-#!/usr/bin/env python3
 """Runs example 10 as a user does: a claim that holds, one that fails, the map that shows why, the
 smallest change that fails, and the programs that search.
-
-check_example_10.py RTF DIRECTORY PYTHON
-
-PYTHON has Optuna and Hypothesis.
 """
 
 from __future__ import annotations
@@ -13,27 +8,29 @@ import json
 import os
 import re
 import subprocess
-import sys
-import tempfile
 from pathlib import Path
 from typing import Any
 
+import pytest
+from checkout import ROOT, venv
 from run import expect, expect_in
 
+pytestmark = pytest.mark.venv("demo")
+EXAMPLE = ROOT / "examples/10-campaign"
 EPISODES = 500
 
 
 class Campaigns:
     """The example's campaigns, with results in a directory."""
 
-    def __init__(self, rtf: str, example: Path, results: Path) -> None:
-        self.rtf, self.example, self.results = rtf, example, results
+    def __init__(self, rtf: str, results: Path) -> None:
+        self.rtf, self.results = rtf, results
 
     def call(self, *args: str, code: int) -> str:
         """What a command prints."""
         done = subprocess.run(
             [self.rtf, *args, "--results", str(self.results)],
-            cwd=self.example,
+            cwd=EXAMPLE,
             stdout=subprocess.PIPE,
             text=True,
             check=False,
@@ -50,27 +47,26 @@ class Campaigns:
         return document
 
 
-def main() -> int:
-    """Runs all; exits at the first difference."""
-    rtf, example = str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]).resolve()
-    with tempfile.TemporaryDirectory() as directory:
-        campaigns = Campaigns(rtf, example, Path(directory))
-        campaigns.call("run", "carry.xml", code=0)
-        holds(campaigns)
-        fails(campaigns)
-        searches(campaigns, sys.argv[3])
-    return 0
+@pytest.fixture
+def campaigns(rtf: str, tmp_path: Path) -> Campaigns:
+    """A directory without results."""
+    return Campaigns(rtf, tmp_path)
 
 
-def holds(campaigns: Campaigns) -> None:
-    """The payload of the data sheet."""
+def test_an_episode_is_a_suite(campaigns: Campaigns) -> None:
+    campaigns.call("run", "carry.xml", code=0)
+
+
+@pytest.mark.first
+def test_the_claim_holds_for_the_payload_of_the_data_sheet(campaigns: Campaigns) -> None:
     campaigns.call("campaign", "run", "campaign.xml", "--workers", "2", code=0)
     found = campaigns.show()
     expect("passed", found["passed"], EPISODES)
 
 
-def fails(campaigns: Campaigns) -> None:
-    """Twice that payload: the map shows why the claim fails, and a failed episode fails again."""
+@pytest.mark.first
+def test_the_claim_fails_for_twice_that_payload(campaigns: Campaigns) -> None:
+    """The map shows why, and a failed episode fails again."""
     output = campaigns.call("campaign", "run", "heavy.xml", "--workers", "2", code=1)
     expect_in("claim rate >= 0.95: failed", output)
     found = campaigns.show()
@@ -91,23 +87,25 @@ def fails(campaigns: Campaigns) -> None:
     expect("the payload is at the edge of the map", 0.75 < payload < 0.9, True)
 
 
-def searches(campaigns: Campaigns, python: str) -> None:
-    """The worst world of the data sheet, and the simplest one in which the arm fails."""
-    worst = search(campaigns, python, "worst_world.py", code=0)
+def test_optuna_finds_the_worst_world(campaigns: Campaigns) -> None:
+    worst = search(campaigns, "worst_world.py", code=0)
     found = re.search(r"largest error .* is ([0-9.]+) rad", worst)
     expect("the worst error", found is not None and 0.03 < float(found[1]) < 0.05, True)
-    simplest = search(campaigns, python, "any_payload.py", code=1)
+
+
+def test_hypothesis_finds_the_simplest_world_that_fails(campaigns: Campaigns) -> None:
+    simplest = search(campaigns, "any_payload.py", code=1)
     found = re.search(r"payload=Decimal\('0\.8[0-9]?'\)", simplest)
     expect("Hypothesis finds the payload", found is not None, True)
 
 
-def search(campaigns: Campaigns, python: str, script: str, *, code: int) -> str:
+def search(campaigns: Campaigns, script: str, *, code: int) -> str:
     """What a program that searches prints."""
     path = f"{Path(campaigns.rtf).parent}:{os.environ['PATH']}"
     environment = {**os.environ, "PATH": path, "RTF_RESULTS": str(campaigns.results)}
     done = subprocess.run(
-        [python, script],
-        cwd=campaigns.example,
+        [venv("search") / "python", script],
+        cwd=EXAMPLE,
         env=environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
@@ -117,7 +115,3 @@ def search(campaigns: Campaigns, python: str, script: str, *, code: int) -> str:
     print(done.stdout)
     expect(script, done.returncode, code)
     return done.stdout
-
-
-if __name__ == "__main__":
-    sys.exit(main())

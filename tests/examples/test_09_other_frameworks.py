@@ -1,19 +1,20 @@
-#!/usr/bin/env python3
-"""Runs example 09 as a user does: all tests, one case, and with a simulator that is killed.
-
-check_example_09.py RTF DIRECTORY
-"""
+"""Runs example 09 as a user does: all tests, one case, and with a simulator that is killed."""
 
 from __future__ import annotations
 
-import sys
-import tempfile
+import fcntl
+import functools
 from collections import Counter
 from pathlib import Path
 
-from processes import kill, select
+import pytest
+from checkout import BUILD, ROOT, call, exports, venv
+from processes import kill, running
 from run import Run, expect, is_a
 
+pytestmark = [pytest.mark.venv("demo"), pytest.mark.first]
+EXAMPLE = ROOT / "examples/09-other-frameworks"
+SUITE = str(EXAMPLE / "other-frameworks.xml")
 TESTS = {
     "limits_test": {"passed": 6, "skipped": 1},
     "reach_test": {"passed": 8},
@@ -29,21 +30,34 @@ ELBOW = 3
 """The case that moves the elbow: the one before it takes more than 200 ms."""
 
 
-def main() -> int:
-    """Runs all; exits at the first difference."""
-    rtf, example = str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]).resolve()
-    suite = str(example / "other-frameworks.xml")
-    with tempfile.TemporaryDirectory() as directory:
-        results = Path(directory)
-        all_tests(Run(rtf, suite, results / "all"))
-        case = "Joints/Limits.MovesWithin/elbow"
-        one_case(Run(rtf, f"{suite}::limits_test/{case}", results / "case"), case)
-        killed(Run(rtf, f"{suite}::limits_test", results / "killed"))
-    return 0
+@pytest.fixture(autouse=True)
+def _programs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # Another test may use its own arm.
+    monkeypatch.setenv("RTF_LOCKS", str(tmp_path / "locks"))
+    monkeypatch.setenv("RTF_PYTHON", str(venv("test") / "python"))
+    monkeypatch.setenv("RTF_PLUGIN_PATH", str(programs()))
 
 
-def all_tests(run: Run) -> None:
-    """Every framework's cases arrive."""
+@functools.cache
+def programs() -> Path:
+    """Builds the programs of the lesson with all frameworks; their directory."""
+    built = BUILD / "examples/09-other-frameworks"
+    settings = {
+        "GPR_PROJECT_PATH": str(ROOT / "sdk/ada"),
+        "rtf_DIR": str(ROOT / "sdk/cpp/cmake/rtf"),
+    }
+    for framework in ("gtest", "catch2", "cppunit", "aunit", "junit"):
+        settings |= exports("tests/frameworks/build.sh", framework)
+    settings.pop("PATH", None)
+    BUILD.mkdir(exist_ok=True)
+    with (BUILD / "09-other-frameworks.lock").open("a") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        call(EXAMPLE / "build.sh", built, cwd=ROOT, **settings)
+    return built
+
+
+def test_the_cases_of_each_framework_arrive(rtf: str, tmp_path: Path) -> None:
+    run = Run(rtf, SUITE, tmp_path / "results")
     expect("exit code", run.wait(), 0)
     names = {event["test"]: event["name"] for event in run.events("test-planned")}
     cases: dict[str, Counter[str]] = {name: Counter() for name in names.values()}
@@ -53,17 +67,18 @@ def all_tests(run: Run) -> None:
     expect("measured", sum(1 for _ in run.events("measured")), MEASUREMENTS)
 
 
-def one_case(run: Run, case: str) -> None:
-    """A case is selected by its name."""
+def test_a_case_is_selected_by_its_name(rtf: str, tmp_path: Path) -> None:
+    case = "Joints/Limits.MovesWithin/elbow"
+    run = Run(rtf, f"{SUITE}::limits_test/{case}", tmp_path / "results")
     expect("exit code", run.wait(), 0)
     expect("cases", [event["name"] for event in run.events("case-started")], [case])
 
 
-def killed(run: Run) -> None:
-    """The cases that had finished before the collapse do not run again."""
+def test_cases_that_finished_before_a_collapse_are_not_rerun(rtf: str, tmp_path: Path) -> None:
+    run = Run(rtf, f"{SUITE}::limits_test", tmp_path / "results")
     try:
         run.wait_for(lambda event: is_a(event, "case-started") and event["case"] == ELBOW)
-        kill(select(lambda _, words, env: is_simulator(words) and is_of(run, env)))
+        kill(running("simulator.py"))
     except BaseException:
         run.stop()
         raise
@@ -76,18 +91,3 @@ def killed(run: Run) -> None:
     expect("cases", Counter(event["verdict"] for event in finished), {"passed": 6, "skipped": 1})
     carried = sum("carried" in event for event in finished)
     expect("some cases were carried", 1 <= carried <= len(finished) - 1, True)
-
-
-def is_simulator(words: list[str]) -> bool:
-    """Whether a process is the simulator."""
-    return any(Path(word).name == "simulator.py" for word in words[:2])
-
-
-def is_of(run: Run, environment: list[str]) -> bool:
-    """Whether a process belongs to a run."""
-    directory = run.journal.parent.resolve()
-    return f"RTF_RUN_DIR={directory}" in environment
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,47 +1,29 @@
-#!/usr/bin/env python3
 """Runs example 11 as a user does: a monitor finds an overshoot in a test that would pass, its
 recording is replayed, more damping avoids it, and a violated limit stops a test. A camera is cut
 off for half a second.
-
-check_example_11.py RTF DIRECTORY
 """
 
 from __future__ import annotations
 
 import shlex
 import shutil
-import sys
-import tempfile
 from pathlib import Path
 
+import pytest
+from checkout import ROOT
 from run import Event, Run, expect, expect_in
 
+pytestmark = pytest.mark.venv("mcap")
+EXAMPLE = ROOT / "examples/11-signals"
+ARM, CAMERA = str(EXAMPLE / "arm.xml"), str(EXAMPLE / "camera.xml")
 SHELF = 1.05
 """In radians."""
 
 
-def main() -> int:
-    """Runs all; exits at the first difference."""
-    rtf, example = str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]).resolve()
-    suite = str(example / "arm.xml")
-    with tempfile.TemporaryDirectory() as directory:
-        results = Path(directory)
-        run = Run(rtf, suite, results / "overshoot")
-        overshoot(run)
-        replayed(run, rtf, results)
-        damped(Run(rtf, suite, results / "damped", "--set", "damping=1"))
-        copy = results / "copy"
-        shutil.copytree(example, copy)
-        model = (copy / "arm.urdf").read_text()
-        expect_in('velocity="12"', model)
-        (copy / "arm.urdf").write_text(model.replace('velocity="12"', 'velocity="5"'))
-        stopped(Run(rtf, str(copy / "arm.xml"), results / "stopped"), "5rad/s")
-        simulation = results / "simulation"
-        stopped(Run(rtf, str(copy / "arm.xml"), simulation, "--profile", "simulation"), "4.5rad/s")
-        camera = str(example / "camera.xml")
-        cut_off(Run(rtf, camera, results / "camera"))
-        blind(Run(rtf, camera, results / "blind", "--set", "patience=10"))
-    return 0
+def test_a_monitor_finds_an_overshoot_and_the_replay_repeats_it(rtf: str, tmp_path: Path) -> None:
+    run = Run(rtf, ARM, tmp_path / "overshoot")
+    overshoot(run)
+    replayed(run, rtf, tmp_path)
 
 
 def overshoot(run: Run) -> None:
@@ -70,9 +52,7 @@ def replayed(run: Run, rtf: str, results: Path) -> None:
     repeated = Run(rtf, words[2], results / "repeated", *words[3:])
     expect("exit code", repeated.wait(), 1)
     expect("verdicts", repeated.verdicts(), {"far": "failed"})
-    [failure] = [
-        event for event in repeated.events("message") if event["message"]["kind"] == "failure"
-    ]
+    [failure] = failures(repeated)
     expect_in("monitor `does not touch the shelf`: `1.05rad > q` does not hold", str(failure))
     interval = failure["message"]["interval"]
     expect("interval", interval["signals"], ["q"])
@@ -84,14 +64,28 @@ def replayed(run: Run, rtf: str, results: Path) -> None:
     expect("exit code", farther.wait(), 0)
 
 
-def damped(run: Run) -> None:
-    """More damping."""
+def test_more_damping_avoids_the_overshoot(rtf: str, tmp_path: Path) -> None:
+    run = Run(rtf, ARM, tmp_path / "results", "--set", "damping=1")
     expect("exit code", run.wait(), 0)
     expect("all monitors hold", all(value > 0 for value in all_measured(run)), True)
 
 
-def stopped(run: Run, limit: str) -> None:
-    """The motion is interrupted by a limit of the safety envelope."""
+@pytest.mark.parametrize(
+    ("limit", "options"),
+    [
+        pytest.param("5rad/s", [], id="robot"),
+        pytest.param("4.5rad/s", ["--profile", "simulation"], id="simulation"),
+    ],
+)
+def test_a_limit_of_the_envelope_stops_the_motion(
+    rtf: str, tmp_path: Path, limit: str, options: list[str]
+) -> None:
+    copy = tmp_path / "copy"
+    shutil.copytree(EXAMPLE, copy)
+    model = (copy / "arm.urdf").read_text()
+    expect_in('velocity="12"', model)
+    (copy / "arm.urdf").write_text(model.replace('velocity="12"', 'velocity="5"'))
+    run = Run(rtf, str(copy / "arm.xml"), tmp_path / "results", *options)
     expect("exit code", run.wait(), 1)
     expect("verdicts", run.verdicts(), {"near": "passed", "far": "failed"})
     [stopping] = run.events("test-stopping")
@@ -100,8 +94,8 @@ def stopped(run: Run, limit: str) -> None:
     expect_in("arm.limits.yaml:7:5)", stopping["reason"])
 
 
-def cut_off(run: Run) -> None:
-    """The robot stops while the camera is cut off, and drives again."""
+def test_the_robot_stops_while_the_camera_is_cut_off(rtf: str, tmp_path: Path) -> None:
+    run = Run(rtf, CAMERA, tmp_path / "results")
     expect("exit code", run.wait(), 0)
     [injected] = run.events("fault-injected")
     [removed] = run.events("fault-removed")
@@ -111,11 +105,11 @@ def cut_off(run: Run) -> None:
     expect("stops", 0.0 in {speed for _, speed in samples(run, run.name(injected), "speed")}, True)
 
 
-def blind(run: Run) -> None:
-    """A robot with more patience drives on."""
+def test_a_robot_with_more_patience_drives_blindly(rtf: str, tmp_path: Path) -> None:
+    run = Run(rtf, CAMERA, tmp_path / "results", "--set", "patience=10")
     expect("exit code", run.wait(), 1)
     expect("verdicts", run.verdicts(), {"sees": "passed", "is blind for a moment": "failed"})
-    [failure] = [event for event in run.events("message") if event["message"]["kind"] == "failure"]
+    [failure] = failures(run)
     expect_in("monitor `does not drive blindly`", str(failure))
 
 
@@ -148,7 +142,3 @@ def all_measured(run: Run) -> list[float]:
     """The values of all measurements of monitors."""
     values = [event["measurement"] for event in run.events("measured")]
     return [each["value"] for each in values if each["name"].startswith("monitor/")]
-
-
-if __name__ == "__main__":
-    sys.exit(main())
