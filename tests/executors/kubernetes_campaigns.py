@@ -1,12 +1,12 @@
-"""Checks `rtf campaign run --executor kubernetes`: part of check_kubernetes.py."""
+"""Checks `rtf campaign run --executor kubernetes`: part of kubernetes_checks.py."""
 
 from __future__ import annotations
 
 import os
 import signal
 
-from campaigns import Campaigns
-from kubernetes import NAMESPACE, Cluster
+from cluster_campaigns import Campaigns
+from kubernetes_cluster import NAMESPACE, Cluster
 from waiting import EPISODES, commands, equal, expect, finish, finish_with_output, until
 
 HOOKED = """<suite name="hooked">

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import subprocess
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -53,16 +52,16 @@ def until(what: str, is_true: Callable[[], bool]) -> None:
     deadline = time.monotonic() + LIMIT
     while not is_true():
         if time.monotonic() > deadline:
-            sys.exit(f"after {LIMIT} s: not {what}")
+            raise AssertionError(f"after {LIMIT} s: not {what}")
         time.sleep(0.05)
 
 
 def equal(actual: object, expected: object) -> None:
-    """Exits unless the values are equal."""
+    """Fails unless the values are equal."""
     expect(actual == expected, f"{actual} is not {expected}")
 
 
 def expect(is_true: bool, message: str) -> None:
-    """Exits with a message unless it is true."""
+    """Fails with a message unless it is true."""
     if not is_true:
         raise AssertionError(message)

@@ -62,10 +62,14 @@ class Cluster:
     ) -> None:
         """Ends everything; after an error, prints the logs."""
         if kind:
-            for log in sorted(self.dir.glob("*.out")):
-                tail = log.read_text(errors="replace").splitlines()[-8:]
-                print(f"--- {log.name}", *tail, sep="\n", file=sys.stderr)
+            self.print_logs()
         self.stop()
+
+    def print_logs(self) -> None:
+        """Prints the ends of the logs."""
+        for log in sorted(self.dir.glob("*.out")):
+            tail = log.read_text(errors="replace").splitlines()[-8:]
+            print(f"--- {log.name}", *tail, sep="\n", file=sys.stderr)
 
     def start_control_plane(self) -> None:
         """Starts the components, and waits until the API server answers."""

@@ -1,14 +1,11 @@
-#!/usr/bin/env python3
-"""Checks `rtf run --executor kubernetes` with Kubernetes' own control plane and nodes of node.py.
+"""Checks of `--executor kubernetes` in separate namespaces: part of test_kubernetes.py.
 
-    unshare --mount --pid --fork --mount-proc --kill-child check_kubernetes.py RTF PROGRAMS [WORD]
+    unshare --mount --pid --fork --mount-proc --kill-child kubernetes_checks.py RTF PROGRAMS
 
-PROGRAMS is the directory that control_plane/build.sh prints. All processes end with this one. The
-results directory is a mount that only this process and the pods with the volume see. A sharded
-suite has the verdicts of a local run, pods that fail or are evicted run again, a failed hook ends
-the job, a cancelled submission leaves nothing, and a submission whose process was killed is
-resumed. The same for campaigns, in kubernetes_campaigns.py. WORD selects the checks whose names
-contain it.
+PROGRAMS is the directory that control_plane/build.sh prints. Runs the checks whose names it reads,
+one after the other in the same cluster, and prints `passed` or `failed` after each. All processes
+end with this one. The results directory is a mount that only this process and the pods with the
+volume see. The checks of campaigns are in kubernetes_campaigns.py.
 """
 
 from __future__ import annotations
@@ -20,15 +17,15 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
+import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import kubernetes_campaigns
-from campaigns import Campaigns
-from kubernetes import CLAIM, IMAGE, NAMESPACE, Cluster
-from project import TESTS, Executor, Project, stored
+from cluster_campaigns import Campaigns
+from cluster_project import TESTS, Executor, Project, stored
+from kubernetes_cluster import CLAIM, IMAGE, NAMESPACE, Cluster
 from waiting import commands, equal, expect, finish, finish_with_output, until
 
 PATCH = """\
@@ -69,24 +66,24 @@ end
 """
 
 
-def main() -> int:
-    """Runs all checks."""
+def main() -> None:
+    """Runs the checks whose names are on standard input."""
     rtf, programs = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
-    word = sys.argv[3] if len(sys.argv) > 3 else ""
-    checks: list[Callable[[Cluster, Path], None]] = [of_suite(check) for check in SUITES]
-    checks += [of_campaign(check) for check in kubernetes_campaigns.CHECKS]
-    wanted = [check for check in checks if word in check.__name__]
     with (
         tempfile.TemporaryDirectory() as directory,
         Cluster(programs, Path(directory).resolve(), rtf) as cluster,
     ):
-        for check in wanted:
-            started = time.monotonic()
-            with project_directory(cluster) as project:
-                check(cluster, project)
-            print(f"ok  {check.__name__}  {time.monotonic() - started:.1f} s", flush=True)
+        for line in sys.stdin:
+            try:
+                with project_directory(cluster) as project:
+                    CHECKS[line.strip()](cluster, project)
+                result = "passed"
+            except Exception:
+                traceback.print_exc()
+                cluster.print_logs()
+                result = "failed"
             cluster.clean()
-    return 0 if wanted else 1
+            print(result, flush=True)
 
 
 @contextmanager
@@ -117,7 +114,6 @@ def of_suite(check: Callable[[Cluster, Project], None]) -> Callable[[Cluster, Pa
     def run(cluster: Cluster, directory: Path) -> None:
         check(cluster, Project(str(cluster.rtf), directory, executor(cluster)))
 
-    run.__name__ = check.__name__
     return run
 
 
@@ -127,7 +123,6 @@ def of_campaign(check: Callable[[Cluster, Campaigns], None]) -> Callable[[Cluste
     def run(cluster: Cluster, directory: Path) -> None:
         check(cluster, Campaigns(str(cluster.rtf), directory, executor(cluster)))
 
-    run.__name__ = check.__name__
     return run
 
 
@@ -314,8 +309,11 @@ SUITES = [
     no_script,
     refusals,
 ]
+CHECKS = {check.__name__: of_suite(check) for check in SUITES} | {
+    check.__name__: of_campaign(check) for check in kubernetes_campaigns.CHECKS
+}
 
 
 if __name__ == "__main__":
     os.environ.pop("RTF_RESULTS", None)
-    sys.exit(main())
+    main()

@@ -8,7 +8,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from project import Executor
+from cluster_project import Executor
 from waiting import EPISODES, equal, expect, finish, until
 
 # Half of the episodes fail. While the file `hold` exists, they wait.

@@ -1,16 +1,19 @@
-"""Checks `rtf campaign run --executor slurm`: part of check_slurm.py."""
+"""`rtf campaign run --executor slurm` with a real cluster of two nodes, see tools/slurm.sh."""
 
 from __future__ import annotations
 
 import os
 import signal
 
-from campaigns import Campaigns
-from slurm import jobs, scontrol, start_waiting_tasks
+import pytest
+from cluster_campaigns import Campaigns
+from slurm_cluster import jobs, scontrol, start_waiting_tasks
 from waiting import EPISODES, commands, equal, expect, finish, finish_with_output, until
 
+pytestmark = pytest.mark.first
 
-def same_results(campaigns: Campaigns) -> None:
+
+def test_results_are_the_same_on_local_workers_and_in_the_cluster(campaigns: Campaigns) -> None:
     """The results of all episodes are the same on 1, 2 and 4 workers and in the cluster."""
     results = []
     for workers in "124":
@@ -27,7 +30,7 @@ def same_results(campaigns: Campaigns) -> None:
     expect("4 of 4 tasks ended, 0 running, 0 waiting" in errors, errors)
 
 
-def failed_node_and_killed_process(campaigns: Campaigns) -> None:
+def test_a_failed_node_and_a_killed_process(campaigns: Campaigns) -> None:
     """A node fails, and the submitting process is killed: each episode has one final result."""
     process = campaigns.start_and_hold(EPISODES // 2)
     process.kill()
@@ -46,7 +49,7 @@ def failed_node_and_killed_process(campaigns: Campaigns) -> None:
     campaigns.two_tasks_ran_again(before)
 
 
-def worker_that_dies(campaigns: Campaigns) -> None:
+def test_the_episode_of_a_killed_worker_is_repeated(campaigns: Campaigns) -> None:
     """The episode of a task that was killed is the bench's, and repeated in a further array."""
     campaigns.hold()
     process = campaigns.start_in_cluster()
@@ -64,7 +67,7 @@ def worker_that_dies(campaigns: Campaigns) -> None:
     equal(set(campaigns.recorded().values()), {1})
 
 
-def early_end(campaigns: Campaigns) -> None:
+def test_a_decided_claim_ends_the_array(campaigns: Campaigns) -> None:
     """A decided claim ends the array."""
     stop = '<stop rule="sprt" low="0.8" high="0.95" alpha="0.01" beta="0.01"/>'
     process = campaigns.start_in_cluster(episodes=5000, rate="0.9", stop=stop)
@@ -74,7 +77,7 @@ def early_end(campaigns: Campaigns) -> None:
     expect(len(campaigns.results()) < 1000, output)
 
 
-def cancelled_and_continued(campaigns: Campaigns) -> None:
+def test_a_cancelled_campaign_is_continued(campaigns: Campaigns) -> None:
     """Ctrl-C leaves no job and no process, and the rest runs later."""
     process = campaigns.start_and_hold(4)
     process.send_signal(signal.SIGINT)
@@ -86,7 +89,7 @@ def cancelled_and_continued(campaigns: Campaigns) -> None:
     campaigns.ran_once()
 
 
-def killed_while_it_stops(campaigns: Campaigns) -> None:
+def test_a_campaign_that_was_killed_while_it_stops_is_continued(campaigns: Campaigns) -> None:
     """A process that was killed after Ctrl-C is continued: the stopped array first ends."""
     campaigns.hold()
     process = campaigns.start_in_cluster()
@@ -100,7 +103,7 @@ def killed_while_it_stops(campaigns: Campaigns) -> None:
     equal(sorted(campaigns.results()), list(range(1, EPISODES + 1)))
 
 
-def campaign_licences(campaigns: Campaigns) -> None:
+def test_workers_that_need_the_only_licence_run_one_by_one(campaigns: Campaigns) -> None:
     """Tasks that need the only licence never run at the same time."""
     campaigns.hold()
     process = campaigns.start_in_cluster(
@@ -112,14 +115,3 @@ def campaign_licences(campaigns: Campaigns) -> None:
     campaigns.release()
     finish(process, 0)
     equal(len(campaigns.results()), 8)
-
-
-CHECKS = [
-    same_results,
-    failed_node_and_killed_process,
-    worker_that_dies,
-    early_end,
-    cancelled_and_continued,
-    killed_while_it_stops,
-    campaign_licences,
-]
