@@ -1,8 +1,7 @@
-"""Runs robottestingframework-testrunner of 2.x and ours with the same options, and compares.
+"""robottestingframework-testrunner of 2.x and ours with the same options, see command_lines.py.
 
-command.py PREDECESSOR PREFIX: the unpacked packages, and an installed rtf. An outcome is
+An outcome is
 `exit code | counts on standard output | the tests in the result file, with their messages`.
-Prints every case with its reason, and fails if one differs from the tables in options.py.
 """
 
 from __future__ import annotations
@@ -12,13 +11,13 @@ import os
 import re
 import signal
 import subprocess
-import sys
-import tempfile
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
-from options import CASES, FILES, REFUSED, Case
+import pytest
+from command_lines import CASES, FILES, REFUSED, Case
 
 NAME = "robottestingframework-testrunner"
 SECONDS = 60
@@ -53,24 +52,51 @@ class Runner:
             errors="replace",
         )
 
-    def run(self, case: Case) -> str:
-        """The outcome of a case, in a separate directory."""
-        with tempfile.TemporaryDirectory() as name:
-            directory = Path(name)
-            write_files(directory)
-            process = self.start(case.options, directory)
-            if case.interrupt:
-                wait_for(directory / "started")
-                process.send_signal(signal.SIGINT)
-                # A test that was interrupted ends by itself; another one waits for this file.
-                with contextlib.suppress(subprocess.TimeoutExpired):
-                    process.wait(1)
-                (directory / "go").touch()
-            stdout, _ = process.communicate(timeout=SECONDS)
-            code = "died" if process.returncode < 0 else str(process.returncode)
-            result = directory / case.result
-            told = outcome(result, case) if result.is_file() else "no file"
+    def run(self, case: Case, directory: Path) -> str:
+        """The outcome of a case, in a new directory."""
+        directory.mkdir()
+        write_files(directory)
+        process = self.start(case.options, directory)
+        if case.interrupt:
+            wait_for(directory / "started")
+            process.send_signal(signal.SIGINT)
+            # A test that was interrupted ends by itself; another one waits for this file.
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.wait(1)
+            (directory / "go").touch()
+        stdout, _ = process.communicate(timeout=SECONDS)
+        code = "died" if process.returncode < 0 else str(process.returncode)
+        result = directory / case.result
+        told = outcome(result, case) if result.is_file() else "no file"
         return f"{code} | {counts(stdout)} | {told}"
+
+
+@pytest.fixture
+def runners(predecessor: Path, prefix: Path) -> Iterator[tuple[Runner, Runner]]:
+    """2.x and ours."""
+    # Shells ignore SIGINT in background processes, and 2.x does not change that.
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield Runner(predecessor), Runner(prefix)
+    signal.signal(signal.SIGINT, handler)
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: " ".join(case.options))
+def test_outcome(runners: tuple[Runner, Runner], tmp_path: Path, case: Case) -> None:
+    old, new = runners
+    expected = (case.old, case.new or case.old)
+    assert expected[0] == expected[1] or case.why, "a difference without a reason"
+    assert (old.run(case, tmp_path / "old"), new.run(case, tmp_path / "new")) == expected
+
+
+@pytest.mark.parametrize(
+    ("options", "code"), REFUSED, ids=lambda it: " ".join(it) if isinstance(it, list) else it
+)
+def test_exit_code(
+    runners: tuple[Runner, Runner], tmp_path: Path, options: list[str], code: str
+) -> None:
+    for number, runner in enumerate(runners):
+        outcome = runner.run(Case(options, ""), tmp_path / str(number))
+        assert outcome.split(" | ", maxsplit=1)[0] == code
 
 
 def write_files(directory: Path) -> None:
@@ -137,37 +163,3 @@ def junit(content: str) -> list[str]:
 def plain(name: str) -> str:
     """The name in 2.x is the file name; ours has no extension, and `#2` for a second test."""
     return re.sub(r"(\.lua|#[0-9]+)$", "", name)
-
-
-def main() -> int:
-    """Returns the exit code."""
-    # Shells ignore SIGINT in background processes, and 2.x does not change that.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    old, new = (Runner(Path(argument).resolve()) for argument in sys.argv[1:3])
-    wrong = 0
-    for case in CASES:
-        got = (old.run(case), new.run(case))
-        expected = (case.old, case.new or case.old)
-        if expected[0] != expected[1] and not case.why:
-            raise ValueError(f"a difference without a reason: {case.options}")
-        mark = "equal" if expected[0] == expected[1] else "ours "
-        if got == expected:
-            print(f"ok     {mark} {' '.join(case.options)}")
-        else:
-            wrong += 1
-            print(f"WRONG  {' '.join(case.options)}\n  old {got[0]}\n  new {got[1]}")
-            print(f"  expected {expected[0]}\n           {expected[1]}")
-        if case.why:
-            print(f"               {case.why}")
-    for options, code in REFUSED:
-        case = Case(options, "")
-        codes = [runner.run(case).split(" | ", maxsplit=1)[0] for runner in (old, new)]
-        is_right = codes == [code, code]
-        wrong += not is_right
-        print(f"{'ok     equal' if is_right else 'WRONG '} {' '.join(options)}: exit codes {codes}")
-    print(f"{len(CASES) + len(REFUSED)} cases, {wrong} wrong")
-    return 1 if wrong else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
