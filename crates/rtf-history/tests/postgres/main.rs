@@ -19,7 +19,7 @@ use world::{Run, Test, World, all_runs, all_tests, dump};
 
 /// What the tests have in common: they need the same server.
 #[test]
-#[ignore = "needs PostgreSQL: the step `history in PostgreSQL` of tools/test.sh runs it"]
+#[ignore = "needs PostgreSQL: tests/test_rust.py runs it"]
 fn a_history_in_postgresql() {
     let server = Server::start();
     answers_are_those_of_sqlite(&server);

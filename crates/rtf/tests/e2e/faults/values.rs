@@ -1,4 +1,4 @@
-//! Faults of proxies. Those of real middleware: `tools/check_proxies.py`.
+//! Faults of proxies. Those of real middleware: `tests/middleware/test_proxies.py`.
 
 use rtf_model::{EventKind, FaultKind};
 
