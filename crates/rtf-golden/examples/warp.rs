@@ -1,5 +1,5 @@
 //! Prints the distance of two sequences for each line `RADIUS;VALUE,VALUE,…;VALUE,…` of the standard
-//! input, or `none`. For `tests/golden/oracle.py`.
+//! input, or `none`. For `tests/golden/warping.py`.
 
 use std::io::{BufRead, Error, Write};
 
