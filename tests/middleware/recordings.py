@@ -1,20 +1,24 @@
 """Recordings for checks: read, and cut off as by a killed recorder.
 
-Needs a Python with the library `mcap`, and for bags ROS 1.
+Needs the library `mcap`, see `packages`.
 """
 
 from __future__ import annotations
 
 import contextlib
-import importlib
 import json
 import os
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 Series = dict[str, list[tuple[float, float]]]
+
+
+def packages(programs: Path) -> Path:
+    """The directory of the packages of a virtual environment."""
+    (found,) = programs.parent.glob("lib/python3*/site-packages")
+    return found
 
 
 def messages(file: Path) -> Iterator[Any]:
@@ -37,25 +41,6 @@ def series(file: Path) -> Series:
     }
 
 
-def as_mcap(bag: Path, path: Path) -> Path:
-    """Write the messages of a bag into an MCAP file as ROS's converters do."""
-    from mcap.writer import Writer  # noqa: PLC0415
-
-    rosbag: Any = importlib.import_module("rosbag")
-    channels: dict[str, int] = {}
-    with path.open("wb") as stream, rosbag.Bag(str(bag)) as source:
-        writer = Writer(stream)
-        writer.start(profile="ros1")
-        for topic, (kind, data, md5sum, *_, found), at in source.read_messages(raw=True):
-            if topic not in channels:
-                text = found._full_text.encode()
-                schema = writer.register_schema(kind, "ros1msg", text)
-                channels[topic] = writer.register_channel(topic, "ros1", schema, {"md5sum": md5sum})
-            writer.add_message(channels[topic], at.to_nsec(), data, at.to_nsec())
-        writer.finish()
-    return path
-
-
 def cut(file: Path, torn: Path) -> tuple[Path, int]:
     """Write a recording with many chunks and cut it off; the number of complete messages."""
     from mcap.reader import NonSeekingReader  # noqa: PLC0415
@@ -76,18 +61,3 @@ def cut(file: Path, torn: Path) -> tuple[Path, int]:
         for _ in NonSeekingReader(stream).iter_messages(log_time_order=False):
             complete += 1
     return torn, complete
-
-
-def cut_bag(file: Path, torn: Path) -> tuple[Path, int]:
-    """Write a bag with many chunks and cut it off; the number of messages ROS can restore."""
-    # Only with ROS; the fixture `rosbag` has the same name.
-    rosbag: Any = importlib.import_module("rosbag")
-    with rosbag.Bag(str(file)) as bag, rosbag.Bag(str(torn), "w", chunk_threshold=512) as copy:
-        for topic, message, at in bag.read_messages(topics=["/level"]):
-            copy.write(topic, message, at)
-    os.truncate(torn, torn.stat().st_size // 2)
-    restored = torn.with_name("restored.bag")
-    restored.write_bytes(torn.read_bytes())
-    subprocess.run(["rosbag", "reindex", "-q", str(restored)], check=True)
-    with rosbag.Bag(str(restored)) as bag:
-        return torn, int(bag.get_message_count())
