@@ -20,8 +20,11 @@ from checkout import BUILD, ROOT, TARGET, exports, venv
 collect_ignore = [
     "colcon/workspace",
     "ctest/project",
+    "frameworks/descendants",
     "frameworks/pytest",
-    "frameworks/pytest_projects/projects",
+    "frameworks/pytest_projects",
+    "frameworks/rostest",
+    "frameworks/tap",
     "frameworks/unittest",
     "import/workspace",
     "predecessor/project",

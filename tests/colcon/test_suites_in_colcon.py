@@ -15,6 +15,7 @@ import pytest
 from checkout import ROOT, need_packages, venv
 from run import expect
 
+pytestmark = pytest.mark.first
 # ament needs the Python for which Debian's packages are installed.
 CMAKE_ARGS = ["--cmake-args", "-DPython3_EXECUTABLE=/usr/bin/python3"]
 

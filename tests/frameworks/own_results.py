@@ -59,7 +59,7 @@ def own_counts(own: dict[str, Any], source: Path, out: Path) -> Counter[str]:
                 for file in files:
                     counts += junit_counts(ET.parse(file).getroot())
         if not counts:
-            raise SystemExit(f"{command} reported no case:\n{done.stdout}")
+            raise AssertionError(f"{command} reported no case:\n{done.stdout}")
     return counts
 
 

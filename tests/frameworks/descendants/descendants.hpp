@@ -1,5 +1,5 @@
 // What the cases of the programs `descendants_test` do: each starts processes,
-// and holds or not. tests/frameworks/descendants/check.py compares the verdicts
+// and holds or not. tests/frameworks/test_child_processes.py compares the verdicts
 // under rtf with those without it.
 #ifndef DESCENDANTS_HPP
 #define DESCENDANTS_HPP

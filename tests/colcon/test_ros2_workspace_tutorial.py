@@ -1,22 +1,15 @@
-#!/usr/bin/env python3
-"""Follows docs/tutorials/ros2-workspace.md literally, in an empty directory.
-
-    tutorial.py PREFIX DIRECTORY
-
-`rtf` is installed in PREFIX; `colcon`, Debian's ament and a Python with `rclpy` are on PATH.
-"""
+"""Follows docs/tutorials/ros2-workspace.md literally, in an empty directory."""
 
 from __future__ import annotations
 
 import os
 import re
-import shutil
 import subprocess
-import sys
-import time
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+import pytest
+from checkout import ROOT, call, need_packages, venv
+
 PAGE = ROOT / "docs/tutorials/ros2-workspace.md"
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.M | re.S)
 FILE = re.compile(r"(?:#|<!--) (\S+\.\w+)(?: -->)?\n")
@@ -35,28 +28,30 @@ EXPECTED = [
 ]
 
 
-def main() -> int:
-    """Prints the commands and what they print; the exit code is 1 if that is not expected."""
-    prefix, directory = (Path(argument).resolve() for argument in sys.argv[1:3])
-    shutil.rmtree(directory, ignore_errors=True)
-    directory.mkdir(parents=True)
-    environment = os.environ | {
-        "PATH": f"{prefix}/bin:{os.environ['PATH']}",
+@pytest.mark.first
+@pytest.mark.middleware("ros2")
+@pytest.mark.usefixtures("rtf")
+def test_the_commands_of_the_tutorial_print_what_it_shows(tmp_path: Path) -> None:
+    need_packages("ament-cmake", "cmake", "g++")
+    prefix, programs, workspace = (tmp_path / name for name in ("prefix", "bin", "workspace"))
+    call("tools/install.sh", PREFIX=str(prefix), DESTDIR="")
+    # Python is that of rclpy; colcon has its own.
+    programs.mkdir()
+    (programs / "colcon").symlink_to(venv("colcon") / "colcon")
+    workspace.mkdir()
+    environment = {name: it for name, it in os.environ.items() if not name.startswith("PYTEST_")}
+    environment |= {
+        "PATH": f"{prefix}/bin:{programs}:{os.environ['PATH']}",
         "CMAKE_PREFIX_PATH": str(prefix),
         # ament needs the Python for which Debian's packages are installed.
         "Python3_ROOT": "/usr",
     }
-    started = time.monotonic()
-    printed = follow(directory, environment)
-    print(f"the commands took {time.monotonic() - started:.0f} s")
+    printed = follow(workspace, environment)
     position = 0
     for text in EXPECTED:
         found = re.compile(text).search(printed, position)
-        if not found:
-            print(f"different: `{text}` is not printed after the text before")
-            return 1
+        assert found, f"`{text}` is not printed after the text before"
         position = found.end()
-    return 0
 
 
 def follow(directory: Path, environment: dict[str, str]) -> str:
@@ -79,10 +74,5 @@ def follow(directory: Path, environment: dict[str, str]) -> str:
         check=False,
     )
     print(ran.stdout)
-    if ran.returncode:
-        raise SystemExit(f"different: a command of {PAGE.name} ended with {ran.returncode}")
+    assert ran.returncode == 0, f"exit code {ran.returncode} of a command of {PAGE.name}"
     return ran.stdout
-
-
-if __name__ == "__main__":
-    sys.exit(main())

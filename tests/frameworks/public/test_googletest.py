@@ -1,7 +1,4 @@
-#!/usr/bin/env python3
 """Runs GoogleTest's own tests with rtf, and compares each with the report of GoogleTest.
-
-    gtest_googletest.py RTF
 
 Debian's package googletest has the sources, with tests of every feature, and one program
 whose tests fail in every way. They are built once, into the user's cache.
@@ -9,18 +6,15 @@ whose tests fail in every way. They are built once, into the user's cache.
 
 from __future__ import annotations
 
+import fcntl
 import os
 import subprocess
-import sys
-import tempfile
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "tests/frameworks")]
-
-from observed import observe  # noqa: E402
-from run import Run  # noqa: E402
+from checkout import call, need_packages
+from observed import observe
+from run import Run
 
 SOURCE = Path("/usr/src/googletest")
 PROGRAMS = [
@@ -43,27 +37,12 @@ OPTIONS = ["-Dgtest_build_tests=ON", "-Dgtest_build_samples=ON", "-DBUILD_GMOCK=
 WORDS = {"error": "failed", "crashed": "failed"}
 
 
-def main() -> int:
-    """Prints all differences; the exit code is 1 if there is any."""
-    rtf = str(Path(sys.argv[1]).resolve())
+def test_googletests_own_tests_have_its_verdicts(rtf: str, tmp_path: Path) -> None:
+    need_packages("googletest", "cmake", "g++")
     build = compiled()
-    with tempfile.TemporaryDirectory() as directory:
-        own = {program: run_gtest(build, program, Path(directory)) for program in PROGRAMS}
-        ours = run_rtf(rtf, build, Path(directory))
-    count = different = 0
-    for program in PROGRAMS:
-        got, expected = ours.get(program, {}), own[program]
-        for name in sorted(got.keys() | expected.keys()):
-            count += 1
-            if got.get(name) != expected.get(name):
-                different += 1
-                outcomes = f"gtest {expected.get(name)}, rtf {got.get(name)}"
-                print(f"different: {program}: {name}: {outcomes}")
-    if count < FEWEST:
-        print(f"GoogleTest ran only {count} tests, expected {FEWEST}")
-        return 1
-    print(f"{count - different} passed, {different} failed")
-    return 1 if different else 0
+    own = {program: run_gtest(build, program, tmp_path) for program in PROGRAMS}
+    assert run_rtf(rtf, build, tmp_path) == own
+    assert sum(map(len, own.values())) >= FEWEST
 
 
 def compiled() -> Path:
@@ -72,12 +51,13 @@ def compiled() -> Path:
     query = ["dpkg-query", "--show", "--showformat=${Version}", "googletest"]
     version = subprocess.run(query, stdout=subprocess.PIPE, text=True, check=True).stdout
     build = cache / "public" / f"googletest-{version}"
-    if all((build / "googletest" / program).exists() for program in PROGRAMS):
-        return build / "googletest"
-    subprocess.run(["cmake", "-S", str(SOURCE), "-B", str(build), *OPTIONS], check=True)
-    jobs = str(os.cpu_count() or 1)
-    command = ["cmake", "--build", str(build), "--parallel", jobs, "--target", *PROGRAMS]
-    subprocess.run(command, check=True)
+    build.parent.mkdir(parents=True, exist_ok=True)
+    with build.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not all((build / "googletest" / program).exists() for program in PROGRAMS):
+            call("cmake", "-S", SOURCE, "-B", build, *OPTIONS)
+            jobs = str(os.cpu_count() or 1)
+            call("cmake", "--build", build, "--parallel", jobs, "--target", *PROGRAMS)
     return build / "googletest"
 
 
@@ -118,7 +98,3 @@ def run_rtf(rtf: str, build: Path, directory: Path) -> dict[str, dict[str, str]]
         name: {path: WORDS.get(case.verdict, case.verdict) for path, case in test.cases.items()}
         for name, test in observe(run.events()).items()
     }
-
-
-if __name__ == "__main__":
-    sys.exit(main())

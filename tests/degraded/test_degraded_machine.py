@@ -1,7 +1,4 @@
-#!/usr/bin/env python3
 """Checks that the verdicts of a suite do not change because the machine is slow.
-
-    check.py RTF
 
 The same suite runs undisturbed, while others use all processors, with results on a slow disk, and
 with little memory that others want too. Needs `stress-ng`, `bindfs` and root.
@@ -14,14 +11,17 @@ import os
 import re
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import pytest
+from checkout import need_packages
+
+# They would disturb each other.
+pytestmark = [pytest.mark.first, pytest.mark.xdist_group("degraded")]
 # Bytes per second: the journal of the suite needs about ten seconds.
 SLOW_DISK = "20k"
 MEMORY = 192 * 2**20
@@ -76,7 +76,7 @@ EXPECTED = {
 class Bench:
     """A directory with the suite."""
 
-    def __init__(self, rtf: Path, directory: Path) -> None:
+    def __init__(self, rtf: str, directory: Path) -> None:
         self.rtf, self.directory = rtf, directory
         for name, text in LUA.items():
             (directory / f"{name}.lua").write_text(text)
@@ -85,12 +85,12 @@ class Bench:
 
     def run(self, results: str, *before: str) -> str:
         """Runs the suite, checks its results, and returns what was printed."""
-        command = [*before, str(self.rtf), "run", "--no-history", "--results", results, "arm.xml"]
+        command = [*before, self.rtf, "run", "--no-history", "--results", results, "arm.xml"]
         done = subprocess.run(
             command, cwd=self.directory, capture_output=True, text=True, check=False
         )
         printed = done.stdout + done.stderr
-        expect(done.returncode == 1, f"exit code {done.returncode}\n{printed}")
+        assert done.returncode == 1, f"exit code {done.returncode}\n{printed}"
         self.check(self.directory / results / "latest" / "events.jsonl", printed)
         return printed
 
@@ -100,12 +100,19 @@ class Bench:
         names = {it["test"]: it["name"] for it in events if it["type"] == "test-planned"}
         ends = [it for it in events if it["type"] == "test-finished"]
         found = {names[it["test"]]: it["verdict"] for it in ends}
-        expect(found == EXPECTED, f"{found} is not {EXPECTED}\n{printed}")
-        expect(len(ends) == len(EXPECTED) + 179 + 59, f"{len(ends)} results")
+        assert found == EXPECTED, f"{found} is not {EXPECTED}\n{printed}"
+        assert len(ends) == len(EXPECTED) + 179 + 59, f"{len(ends)} results"
         failed = [it for it in events if it["type"] == "case-finished" and "reason" in it]
-        expect(len(failed) == 1, f"{failed} is not one case")
+        assert len(failed) == 1, f"{failed} is not one case"
         collapse, end = moment(events, "fixture-collapsed"), moment(events, "test-stopping")
-        expect(end - collapse < COLLAPSE_SECS, f"the test ran on for {end - collapse} s")
+        assert end - collapse < COLLAPSE_SECS, f"the test ran on for {end - collapse} s"
+
+
+@pytest.fixture
+def bench(rtf: str, tmp_path: Path) -> Bench:
+    """A directory with the suite."""
+    need_packages("stress-ng", "bindfs")
+    return Bench(rtf, tmp_path)
 
 
 def moment(events: list[dict[str, Any]], kind: str) -> float:
@@ -114,19 +121,19 @@ def moment(events: list[dict[str, Any]], kind: str) -> float:
     return float(event["at"]) / 1e6
 
 
-def undisturbed(bench: Bench) -> None:
+def test_verdicts_without_disturbance(bench: Bench) -> None:
     """Nothing is slow, and nothing is said about it."""
     printed = bench.run("undisturbed")
-    expect("not yet written" not in printed, printed)
+    assert "not yet written" not in printed, printed
 
 
-def busy_processors(bench: Bench) -> None:
+def test_verdicts_while_others_use_all_processors(bench: Bench) -> None:
     """Four times as many busy processes as processors."""
     with stress("--cpu", str(4 * (os.cpu_count() or 1))):
         bench.run("busy")
 
 
-def slow_disk(bench: Bench) -> None:
+def test_verdicts_with_results_on_a_slow_disk(bench: Bench) -> None:
     """The results are on a disk that writes 20 kB a second, which is said."""
     source, disk = bench.directory / "source", bench.directory / "disk"
     source.mkdir()
@@ -136,13 +143,13 @@ def slow_disk(bench: Bench) -> None:
         try:
             until("the disk is there", lambda: os.path.ismount(disk))
             printed = bench.run("disk/results")
-            expect("not yet written: the disk with `disk/results/" in printed, printed)
+            assert "not yet written: the disk with `disk/results/" in printed, printed
         finally:
             subprocess.run(["umount", "--lazy", str(disk)], check=True)
             server.wait()
 
 
-def little_memory(bench: Bench) -> None:
+def test_verdicts_with_little_memory(bench: Bench) -> None:
     """The run shares a group of 192 MiB with processes that want more than that."""
     group = MEMORY_GROUPS / f"rtf-degraded-{os.getpid()}"
     limit = "memory.limit_in_bytes"
@@ -155,7 +162,7 @@ def little_memory(bench: Bench) -> None:
         # Its processes, and none of rtf's, are killed when there is no memory.
         with stress("--vm", "2", "--vm-bytes", str(MEMORY), before=join):
             bench.run("memory", *join)
-        expect(was_scarce(group), "the memory was not scarce")
+        assert was_scarce(group), "the memory was not scarce"
     finally:
         until("the group is empty", lambda: not (group / "cgroup.procs").read_text())
         group.rmdir()
@@ -176,7 +183,7 @@ def stress(*options: str, before: list[str] | None = None) -> Iterator[None]:
     with subprocess.Popen(command, start_new_session=True, stderr=subprocess.DEVNULL) as process:
         try:
             time.sleep(1)
-            expect(process.poll() is None, "stress-ng ended")
+            assert process.poll() is None, "stress-ng ended"
             yield
         finally:
             os.killpg(process.pid, signal.SIGTERM)
@@ -186,24 +193,5 @@ def until(what: str, is_true: Callable[[], bool]) -> None:
     """Waits for something."""
     deadline = time.monotonic() + 60
     while not is_true():
-        expect(time.monotonic() < deadline, f"after a minute: not {what}")
+        assert time.monotonic() < deadline, f"after a minute: not {what}"
         time.sleep(0.02)
-
-
-def expect(holds: bool, message: str) -> None:
-    """Exits with a message unless something holds."""
-    if not holds:
-        raise SystemExit(f"FAILED: {message}")
-
-
-def main() -> None:
-    """Runs all checks."""
-    for check in (undisturbed, busy_processors, slow_disk, little_memory):
-        with tempfile.TemporaryDirectory(prefix="rtf-degraded-") as name:
-            started = time.monotonic()
-            check(Bench(Path(sys.argv[1]).resolve(), Path(name)))
-            print(f"ok  {check.__name__}  {time.monotonic() - started:.1f} s", flush=True)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,35 +1,33 @@
-#!/usr/bin/env python3
 """Compares the verdicts of programs whose cases start processes, with and without rtf.
 
-    check.py RTF TYPE
-
-`build.sh TYPE` has built the programs, and its exports are set. They run without rtf, where
-the framework permits each case alone, and in each isolation mode of rtf. The verdicts of the
-cases are the same everywhere, each case is reported once, and nothing is reported outside of
-the cases, unless the framework's own report says that something is wrong there.
+The programs run without rtf, where the framework permits each case alone, and in each isolation
+mode of rtf. The verdicts of the cases are the same everywhere, each case is reported once, and
+nothing is reported outside of the cases, unless the framework's own report says that something
+is wrong there.
 """
 
 from __future__ import annotations
 
+import functools
 import os
 import re
 import shlex
-import sys
-import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
-ROOT = Path(__file__).resolve().parents[3]
-HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(ROOT / "tools"), str(HERE.parent), str(HERE)]
+import own_reports
+import pytest
+from _pytest.mark import ParameterSet
+from checkout import ROOT
+from corpora import BUILDS, SOURCES, TYPES, build, parameter
+from observed import TestResult, observe
+from own_reports import OUTSIDE, Verdicts
+from run import Run
 
-import reports  # noqa: E402
-from observed import TestResult, observe  # noqa: E402
-from reports import OUTSIDE, Verdicts  # noqa: E402
-from run import Run  # noqa: E402
-
+HERE = SOURCES / "descendants"
 RUNS: dict[str, list[str]] = {"executed": ["--fork", "never"], "forked": []}
 """Options of rtf; the second run is for programs that can be forked."""
 
@@ -38,7 +36,7 @@ SEPARATE = 'isolation="case"'
 AT_MAIN = 'isolation="case" fork="main"'
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Corpus:
     """The programs of a type."""
 
@@ -53,15 +51,13 @@ class Corpus:
     """Without `command`: the framework's own report about a program with arguments."""
     fixture: str = ""
     """An element that the suite has."""
-
-    def tests(self) -> list[tuple[str, str]]:
-        """Programs with the attributes of their tests."""
-        return [(program, mode) for program in self.programs for mode in self.modes]
+    name: str = ""
+    """For several of a type."""
 
 
 def built(framework: str, program: str) -> str:
     """A program that `build.sh` has built."""
-    return str(ROOT / "build/frameworks" / framework / program)
+    return str(BUILDS / framework / program)
 
 
 def python() -> str:
@@ -69,7 +65,7 @@ def python() -> str:
     return os.environ.get("RTF_PYTHON", "python3")
 
 
-def pytest(*arguments: str) -> list[str]:
+def call_of_pytest(*arguments: str) -> list[str]:
     """A call of pytest."""
     return [python(), "-m", "pytest", *arguments]
 
@@ -148,14 +144,15 @@ CORPORA: dict[str, list[Corpus]] = {
             [PYTEST],
             [ONE, SEPARATE],
             ["test_runs_pytest_in_pytest", "test_deed[passes]", "test_deed[fails]"],
-            lambda program, case: pytest(f"{program}::{case.split('::')[1]}"),
+            lambda program, case: call_of_pytest(f"{program}::{case.split('::')[1]}"),
         ),
         Corpus(
             [PYTEST],
             [f'param="-n 2" cases="{SELECTED}"'],
-            report=lambda program, args: reports.pytest(
-                pytest(*args), [f"{program}::{name}" for name in WORKERS]
+            report=lambda program, args: own_reports.pytest(
+                call_of_pytest(*args), [f"{program}::{name}" for name in WORKERS]
             ),
+            name="workers-",
         ),
     ],
     "unittest": [
@@ -170,7 +167,7 @@ CORPORA: dict[str, list[Corpus]] = {
         Corpus(
             ["descendants_test"],
             [f'param="{name}"' for name in CASES],
-            report=lambda program, args: reports.program([built("program", program), *args]),
+            report=lambda program, args: own_reports.program([built("program", program), *args]),
         )
     ],
     # The child and its parent print to one pipe.
@@ -181,7 +178,7 @@ CORPORA: dict[str, list[Corpus]] = {
                 f'param="tap {" ".join(name for name in CASES if name not in CONTINUING)}"',
                 *(f'param="tap {name}"' for name in CONTINUING),
             ],
-            report=lambda program, args: reports.tap([built("tap", program), *args]),
+            report=lambda program, args: own_reports.tap([built("tap", program), *args]),
         )
     ],
     "ctest": [
@@ -189,47 +186,48 @@ CORPORA: dict[str, list[Corpus]] = {
             [built("ctest", "descendants")],
             [ONE, SEPARATE],
             CASES,
-            report=lambda build, _args: reports.ctest(build),
+            report=lambda build, _args: own_reports.ctest(build),
         )
     ],
     "go": [
         Corpus(
-            [str(HERE.parent / "go/descendants")],
+            [str(SOURCES / "go/descendants")],
             [ONE, SEPARATE],
-            report=lambda package, _args: reports.go(package),
+            report=lambda package, _args: own_reports.go(package),
         )
     ],
     "aunit": [
         Corpus(
             ["descendants_test"],
             [ONE],
-            report=lambda program, _args: reports.aunit(built("aunit", program)),
+            report=lambda program, _args: own_reports.aunit(built("aunit", program)),
         )
     ],
     "junit": [
         Corpus(
             [built("junit", "descendants")],
             [ONE],
-            report=lambda classes, _args: reports.junit(classes),
+            report=lambda classes, _args: own_reports.junit(classes),
         ),
         # Each virtual machine takes a second.
         Corpus(
             [built("junit", "descendants")],
             [f'{SEPARATE} cases="*.fails() *.reads*()"'],
-            report=lambda classes, _args: reports.junit(classes, "fails()", "Prints()"),
+            report=lambda classes, _args: own_reports.junit(classes, "fails()", "Prints()"),
+            name="separate-",
         ),
     ],
     "rostest": [
         Corpus(
-            [str(HERE.parent / "rostest/arm_tests/descendants.test")],
+            [str(SOURCES / "rostest/arm_tests/descendants.test")],
             [ONE],
-            report=lambda launch, _args: reports.rostest(launch),
+            report=lambda launch, _args: own_reports.rostest(launch),
             fixture=MASTER,
         )
     ],
     "cargo": [
         Corpus(
-            [str(HERE.parent / "cargo/descendants")],
+            [str(SOURCES / "cargo/descendants")],
             [ONE, SEPARATE],
             [*CASES, "runs_cargo_in_cargo"],
             lambda package, case: cargo(package, case.partition("::")[2]),
@@ -238,45 +236,63 @@ CORPORA: dict[str, list[Corpus]] = {
 }
 
 
-def main() -> int:
-    """Prints all differences; the exit code is 1 if there is any."""
-    rtf, framework = str(Path(sys.argv[1]).resolve()), sys.argv[2]
+class Trial(NamedTuple):
+    """A program in all modes."""
+
+    framework: str
+    corpus: Corpus
+    program: str
+    title: str
+    """One of `RUNS`."""
+
+
+def trials() -> Iterator[ParameterSet]:
+    """All programs with all options of rtf."""
+    for framework, corpora in CORPORA.items():
+        for corpus in corpora:
+            # Only the separate cases of programs in C++ are forked.
+            is_forked = any("fork=" in mode for mode in corpus.modes)
+            for title in list(RUNS) if is_forked else list(RUNS)[:1]:
+                for program in corpus.programs:
+                    trial = Trial(framework, corpus, program, title)
+                    name = f"{corpus.name}{Path(program).name}-{title}"
+                    yield parameter(framework, trial, name, "children")
+
+
+@pytest.mark.parametrize("trial", list(trials()))
+def test_verdicts_are_those_without_rtf(
+    rtf: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, trial: Trial
+) -> None:
+    build(trial.framework, monkeypatch)
+    tests = run(rtf, trial, tmp_path)
+    corpus, program = trial.corpus, trial.program
+    verdicts: set[str] = set()
     differences: list[str] = []
-    verdicts: list[str] = []
-    for corpus in CORPORA[framework]:
-        # By program and arguments.
-        bare: dict[tuple[str, str], Verdicts] = {}
-        # Only the separate cases of programs in C++ are forked.
-        is_forked = any("fork=" in mode for mode in corpus.modes)
-        for title in list(RUNS) if is_forked else list(RUNS)[:1]:
-            with tempfile.TemporaryDirectory() as name:
-                tests = run(rtf, framework, corpus, Path(name), RUNS[title])
-            for program, mode in corpus.tests():
-                test = tests[name_of(program, mode)]
-                known = bare.setdefault((program, arguments_of(mode)), {})
-                expected = without_rtf(corpus, program, mode, test, known)
-                differences += compare(f"{title}: {program} {mode}", corpus, test, expected)
-        verdicts += [verdict for each in bare.values() for verdict in each.values()]
-    print(f"\n{len(verdicts)} cases, {len(differences)} differences")
-    for difference in differences:
-        print(f"different: {difference}")
-    return 1 if differences or not {"passed", "failed"} <= set(verdicts) else 0
+    for mode in corpus.modes:
+        test = tests[name_of(program, mode)]
+        expected = without_rtf(corpus, program, mode, test)
+        verdicts |= set(expected.values())
+        differences += compare(f"{program} {mode}", corpus, test, expected)
+    assert not differences, "\n".join(differences)
+    assert {"passed", "failed"} <= verdicts
 
 
-def run(
-    rtf: str, framework: str, corpus: Corpus, directory: Path, options: list[str]
-) -> dict[str, TestResult]:
-    """Runs the programs in all modes."""
+def test_each_type_has_programs_with_child_processes() -> None:
+    assert sorted(CORPORA) == TYPES
+
+
+def run(rtf: str, trial: Trial, directory: Path) -> dict[str, TestResult]:
+    """Runs a program in all modes."""
     lines = [
-        f'  <test type="{framework}" name={quoteattr(name_of(program, mode))} {mode}>'
-        f"{program}</test>"
-        for program, mode in corpus.tests()
+        f'  <test type="{trial.framework}" name={quoteattr(name_of(trial.program, mode))} {mode}>'
+        f"{trial.program}</test>"
+        for mode in trial.corpus.modes
     ]
     suite = directory / "suite.xml"
     suite.write_text(
-        "\n".join(['<suite name="descendants">', corpus.fixture, *lines, "</suite>\n"])
+        "\n".join(['<suite name="descendants">', trial.corpus.fixture, *lines, "</suite>\n"])
     )
-    ours = Run(rtf, str(suite), directory / "results", *options)
+    ours = Run(rtf, str(suite), directory / "results", *RUNS[trial.title])
     ours.wait()
     return observe(ours.events())
 
@@ -292,22 +308,26 @@ def arguments_of(mode: str) -> str:
     return found[1] if found else ""
 
 
-def without_rtf(
-    corpus: Corpus, program: str, mode: str, test: TestResult, known: Verdicts
-) -> Verdicts:
-    """The verdicts of a program that the framework's own runner runs; `known` remembers them."""
-    if corpus.command is None and corpus.report is not None and not known:
-        known |= corpus.report(program, shlex.split(arguments_of(mode)))
+def without_rtf(corpus: Corpus, program: str, mode: str, test: TestResult) -> Verdicts:
+    """The verdicts of a program that the framework's own runner runs."""
     if corpus.command is None:
-        return known
-    for case in test.cases.keys() - known.keys():
-        known[case] = verdict_of(corpus.command(program, case), program)
-    return {case: known[case] for case in test.cases}
+        return report_of(corpus, program, arguments_of(mode))
+    return {case: verdict_of(corpus, program, case) for case in test.cases}
 
 
-def verdict_of(command: list[str], program: str) -> str:
+@functools.cache
+def report_of(corpus: Corpus, program: str, arguments: str) -> Verdicts:
+    """The framework's own report about a program."""
+    return corpus.report(program, shlex.split(arguments)) if corpus.report else {}
+
+
+@functools.cache
+def verdict_of(corpus: Corpus, program: str, case: str) -> str:
     """The verdict of a case that the framework's own runner runs."""
-    done = reports.run(command, str(Path(program).parent if "/" in program else ROOT))
+    assert corpus.command
+    done = own_reports.run(
+        corpus.command(program, case), str(Path(program).parent if "/" in program else ROOT)
+    )
     if done.returncode == 0:
         is_skipped = re.search(r"1 skipped|SKIPPED \] 1 test|skipped=1", done.stdout[-400:])
         return "skipped" if is_skipped else "passed"
@@ -337,7 +357,3 @@ def compare(here: str, corpus: Corpus, test: TestResult, bare: Verdicts) -> list
 def verdict(ours: str) -> str:
     """A verdict of rtf in the words of the other frameworks."""
     return {"error": "failed", "crashed": "failed"}.get(ours, ours)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -33,7 +33,7 @@ def fetch(python: str, name: str, version: str, sha256: str) -> Path:
         subprocess.run([*pip, "--dest", directory, *package], check=True)
         (archive,) = Path(directory).glob("*.tar.gz")
         if hashlib.sha256(archive.read_bytes()).hexdigest() != sha256:
-            raise SystemExit(f"{archive.name} has another checksum")
+            raise AssertionError(f"{archive.name} has another checksum")
         with tarfile.open(archive) as files:
             unpack(files, directory)
         # In one step: an interrupted download leaves nothing.

@@ -1,4 +1,4 @@
-"""The verdicts that frameworks themselves report about the programs of `check.py`."""
+"""The verdicts that frameworks themselves report about the programs in `descendants`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
 
-ROOT = Path(__file__).resolve().parents[3]
+from checkout import ROOT
+
 SECONDS = 120
 
 Verdicts = dict[str, str]

@@ -1,10 +1,6 @@
-#!/usr/bin/env python3
-"""Runs the corpus of a framework with rtf, and compares all results with a table.
+"""Runs the corpus of each framework with rtf, and compares all results with a table.
 
-    check.py RTF TYPE
-
-The corpus is `tests/frameworks/TYPE`; `build.sh TYPE` has built it, and its exports are set.
-`expected.json` is the table:
+The corpus is `tests/frameworks/TYPE`. Its `expected.json` is the table:
 
     {
       "runs": [
@@ -61,53 +57,65 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import sys
-import tempfile
 from collections import Counter
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tools")]
-
-from observed import CaseResult, TestResult, observe  # noqa: E402
-from own_results import own_counts, rtf_counts  # noqa: E402
-from run import Run  # noqa: E402
+import pytest
+from corpora import BUILDS, SOURCES, TYPES, build, parameter
+from observed import CaseResult, TestResult, observe
+from own_results import own_counts, rtf_counts
+from run import Run
 
 Table = dict[str, Any]
 
 
-def main() -> int:
-    """Prints all differences; the exit code is 1 if there is any."""
-    rtf, framework = str(Path(sys.argv[1]).resolve()), sys.argv[2]
+TABLES = {name: json.loads((SOURCES / name / "expected.json").read_text()) for name in TYPES}
+
+
+def title_of(run: Table) -> str:
+    """The name of a run."""
+    return str(run.get("name", run["input"]))
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [
+        parameter(framework, (framework, run), title_of(run))
+        for framework, table in TABLES.items()
+        for run in table["runs"]
+    ],
+)
+def test_results_are_those_of_the_table_and_of_the_framework(
+    rtf: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, entry: tuple[str, Table]
+) -> None:
+    framework, run = entry
+    build(framework, monkeypatch)
     corpus = Corpus(framework)
-    results = {}
-    with tempfile.TemporaryDirectory() as name:
-        for number, run in enumerate(corpus.table["runs"]):
-            title = run.get("name", run["input"])
-            print(f"\n=== {title}", flush=True)
-            results[title] = corpus.check_run(rtf, run, Path(name) / str(number))
-        for own in corpus.table["own"]:
-            corpus.check_own(own, results)
-    print(f"\n{corpus.checked} passed, {len(corpus.differences)} failed")
-    for difference in corpus.differences:
-        print(f"different: {difference}")
-    return 1 if corpus.differences else 0
+    results = corpus.check_run(rtf, run, tmp_path / "results")
+    for own in TABLES[framework]["own"]:
+        name, test = own["compare"]
+        if name == title_of(run):
+            corpus.check_own(own, test, results[test])
+    assert not corpus.differences, "\n".join(corpus.differences)
+
+
+def test_counts_of_frameworks_are_compared_with_runs_that_exist() -> None:
+    for framework, table in TABLES.items():
+        runs = {title_of(run) for run in table["runs"]}
+        assert {own["compare"][0] for own in table["own"]} <= runs, framework
 
 
 class Corpus:
     """The corpus of a framework, and all differences from its table."""
 
     def __init__(self, framework: str) -> None:
-        self.source = ROOT / "tests/frameworks" / framework
-        self.out = ROOT / "build/frameworks" / framework
-        self.table: Table = json.loads((self.source / "expected.json").read_text())
+        self.source, self.out = SOURCES / framework, BUILDS / framework
         self.differences: list[str] = []
-        self.checked = 0
 
     def check_run(self, rtf: str, run: Table, directory: Path) -> dict[str, TestResult]:
         """Runs rtf once and compares its exit code, output and tests with the table."""
-        title = run.get("name", run["input"])
+        title = title_of(run)
         file, *selected = run["input"].split("::", maxsplit=1)
         target = "::".join([str(self.source / file), *selected])
         options = [str(option) for option in run.get("options", [])]
@@ -182,11 +190,10 @@ class Corpus:
             found = any(text in message for message in messages)
             self.expect(f"{title}: `{text}` in {messages}", found, True)
 
-    def check_own(self, own: Table, results: dict[str, dict[str, TestResult]]) -> None:
+    def check_own(self, own: Table, test: str, result: TestResult) -> None:
         """Compares the numbers of cases with those of the framework's own runner."""
-        run, test = own["compare"]
-        title = f"{run}: {test}: counts of the framework"
-        got = rtf_counts(results[run][test], own.get("cases", "top"), own.get("left_out", []))
+        title = f"{test}: counts of the framework"
+        got = rtf_counts(result, own.get("cases", "top"), own.get("left_out", []))
         theirs = own_counts(own, self.source, self.out)
         for verdict in own.get("verdicts", ["passed", "failed", "skipped"]):
             self.expect(f"{title}: {verdict}", got[verdict], theirs[verdict])
@@ -196,13 +203,11 @@ class Corpus:
         name, marker = location.split(": ", maxsplit=1)
         lines = (self.source / name).read_text().splitlines()
         found = [at for at, line in enumerate(lines, 1) if line.endswith(f"line: {marker}")]
-        if len(found) != 1:
-            raise SystemExit(f"{name}: {len(found)} lines end with `line: {marker}`")
+        assert len(found) == 1, f"{name}: {len(found)} lines end with `line: {marker}`"
         return f"{Path(name).name}:{found[0]}"
 
     def expect(self, what: str, got: object, expected: object) -> None:
         """Remembers a difference."""
-        self.checked += got == expected
         if got != expected:
             self.differences.append(f"{what}: got {got!r}, expected {expected!r}")
 
@@ -225,7 +230,3 @@ def run_verb(rtf: str, *arguments: str) -> tuple[int, str]:
     )
     print(done.stdout, flush=True)
     return done.returncode, done.stdout
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,27 +1,21 @@
-#!/usr/bin/env python3
 """Runs the tests of a public package with rtf, and compares each with pytest's own report.
 
-    pytest_boltons.py RTF PYTHON
-
 boltons (https://github.com/mahmoud/boltons, BSD licence) has about 500 tests. Its source
-distribution is downloaded from PyPI once, into the user's cache. PYTHON has pytest.
+distribution is downloaded from PyPI once, into the user's cache.
 """
 
 from __future__ import annotations
 
 import os
 import subprocess
-import sys
-import tempfile
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "tests/frameworks")]
-
-from observed import observe  # noqa: E402
-from run import Run  # noqa: E402
-from sdist import fetch  # noqa: E402
+import pytest
+from checkout import venv
+from observed import observe
+from run import Run
+from sdist import fetch
 
 NAME = "boltons"
 VERSION = "26.2.0"
@@ -36,22 +30,17 @@ SUITE = """<suite name="boltons">
 """
 
 
-def main() -> int:
-    """Prints all differences; the exit code is 1 if there is any."""
-    rtf, python = str(Path(sys.argv[1]).resolve()), str(Path(sys.argv[2]).absolute())
+def test_the_tests_of_a_package_have_the_verdicts_of_pytest(
+    rtf: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in [name for name in os.environ if name.startswith("PYTEST_")]:
+        monkeypatch.delenv(name)
+    python = str(venv("pytest") / "python")
+    monkeypatch.setenv("RTF_PYTHON", python)
     source = fetch(python, NAME, VERSION, SHA256)
-    with tempfile.TemporaryDirectory() as directory:
-        own = run_pytest(python, source, Path(directory) / "own.xml")
-        ours = run_rtf(rtf, python, source, Path(directory))
-    names = own.keys() | ours.keys()
-    different = [name for name in sorted(names) if own.get(name) != ours.get(name)]
-    for name in different:
-        print(f"different: {name}: pytest {own.get(name)}, rtf {ours.get(name)}")
-    if len(own) < FEWEST:
-        print(f"pytest ran only {len(own)} tests, expected {FEWEST}")
-        return 1
-    print(f"{len(names) - len(different)} passed, {len(different)} failed")
-    return 1 if different else 0
+    own = run_pytest(python, source, tmp_path / "own.xml")
+    assert run_rtf(rtf, source, tmp_path) == own
+    assert len(own) >= FEWEST
 
 
 def run_pytest(python: str, source: Path, report: Path) -> dict[str, str]:
@@ -73,11 +62,10 @@ def outcome(problems: list[str]) -> str:
     return "skipped" if problems == ["skipped"] else "failed"
 
 
-def run_rtf(rtf: str, python: str, source: Path, directory: Path) -> dict[str, str]:
+def run_rtf(rtf: str, source: Path, directory: Path) -> dict[str, str]:
     """The outcome of each case in the journal of rtf."""
     suite = directory / "suite.xml"
     suite.write_text(SUITE.format(source=source), encoding="utf-8")
-    os.environ["RTF_PYTHON"] = python
     run = Run(rtf, str(suite), directory / "results")
     run.wait()
     (test,) = observe(run.events()).values()
@@ -97,7 +85,3 @@ def junit_name(node_id: str, directory: Path, source: Path) -> str:
     file = str(path.relative_to(source)) if path.is_relative_to(source) else file
     name = ".".join([file.removesuffix(".py").replace("/", "."), *rest])
     return f"{name}{bracket}{parameters}"
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,10 +1,7 @@
-#!/usr/bin/env python3
 """Runs pytest projects with rtf, and compares each case with pytest's own JUnit file.
 
-    check.py RTF PYTHON [PROJECT…]
-
-Each directory next to this file is a project: plug-ins, options and a layout as real projects
-have them. PYTHON has the plug-ins (`tools/requirements-pytest-projects.txt`).
+Each directory in `pytest_projects` is a project: plug-ins, options and a layout as real projects
+have them.
 """
 
 from __future__ import annotations
@@ -14,18 +11,17 @@ import os
 import re
 import shutil
 import subprocess
-import sys
-import tempfile
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent)]
+import pytest
+from checkout import venv
+from corpora import SOURCES
+from observed import TestResult, observe
 
-from observed import TestResult, observe  # noqa: E402
-
+PROJECTS = SOURCES / "pytest_projects"
 SECONDS = 300
 
 FLAKY = {
@@ -70,21 +66,14 @@ RANKS = ("passed", "skipped", "failed")
 SUITE = '<suite name="s"><test type="pytest" name="t" param="{param}"> . </test></suite>\n'
 
 
-def main() -> int:
-    """Prints all differences; the exit code is 1 if there is any."""
-    rtf, python = str(Path(sys.argv[1]).resolve()), str(Path(sys.argv[2]).absolute())
-    names = sys.argv[3:] or sorted(it.name for it in HERE.iterdir() if any(it.glob("*.*")))
-    names = [name for name in names if not name.startswith((".", "_"))]
-    differences: list[str] = []
-    for name in names:
-        with tempfile.TemporaryDirectory() as directory:
-            found = list(Project(name, Path(directory)).differences(rtf, python))
-        print(f"{name}: {'different' if found else 'the same'}", *found, sep="\n  ", flush=True)
-        differences += [f"{name}: {difference}" for difference in found]
-    print(f"{len(names)} projects, {len(differences)} failed")
-    for difference in differences:
-        print(f"different: {difference}")
-    return 1 if differences else 0
+NAMES = sorted(it.name for it in PROJECTS.iterdir() if any(it.glob("*.*")))
+
+
+@pytest.mark.parametrize("name", [it for it in NAMES if not it.startswith((".", "_"))])
+def test_a_project_has_the_verdicts_of_pytest(rtf: str, tmp_path: Path, name: str) -> None:
+    python = str(venv("pytest-projects") / "python")
+    differences = list(Project(name, tmp_path).differences(rtf, python))
+    assert not differences, "\n".join(differences)
 
 
 class Project:
@@ -96,7 +85,7 @@ class Project:
         self.own, self.ours = directory / "own" / name, directory / "ours" / name
         self.junit = directory / "junit.xml"
         for copy in (self.own, self.ours):
-            shutil.copytree(HERE / name, copy)
+            shutil.copytree(PROJECTS / name, copy)
         files = (file for file in self.own.glob("*.*") if file.suffix in CONFIGURATIONS)
         text = "".join(file.read_text() for file in files)
         blocked = (plugin for plugin in INTRUSIVE if plugin not in text)
@@ -251,7 +240,3 @@ def junit_name(node_id: str) -> str:
 def xml_text(text: str) -> str:
     """Return a text as pytest writes characters that XML cannot have."""
     return text
-
-
-if __name__ == "__main__":
-    sys.exit(main())
