@@ -1,23 +1,14 @@
-#!/usr/bin/env python3
-"""Records signals of real middleware, of recordings, and of tests.
-
-    check_signals.py RTF DIRECTORY SOURCE
-
-SOURCE is `ros`, `ros2` or `yarp`, whose suite has this name in DIRECTORY, or `own`: what tests
-report, and its recording. `own` needs a Python with the library `mcap`, also in the suites; `ros`
-also records and reads a bag.
-"""
+"""Records signals of real middleware, of recordings, and of tests."""
 
 from __future__ import annotations
 
-import os
 import shutil
-import subprocess
-import sys
-import tempfile
 from pathlib import Path
 
+import pytest
+from checkout import ROOT, call
 from run import Run, expect, expect_in
+from sources import each_source
 
 Points = list[tuple[float, float]]
 
@@ -34,39 +25,53 @@ PROBLEMS = {
 }
 
 
-def main() -> int:
-    """Runs all; exits at the first difference."""
-    rtf, example = str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]).resolve()
-    source = sys.argv[3]
-    with tempfile.TemporaryDirectory() as name:
-        os.environ["ROS_HOME"] = os.environ["YARP_CONFIG_HOME"] = f"{name}/home"
-        for variable in ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP", "YARP_NAMESPACE"):
-            os.environ.pop(variable, None)
-        copy = Path(name) / "suite"
-        shutil.copytree(example, copy)
-        if source == "own":
-            of_tests_and_recordings(rtf, copy, Path(name))
-        else:
-            of_middleware(rtf, copy / f"{source}.xml", Path(name))
-        if source == "ros":
-            of_bags(rtf, copy, Path(name))
-    return 0
+@pytest.fixture(autouse=True)
+def suites(home: Path, tmp_path: Path) -> Path:
+    """A copy of the suites, which tests change."""
+    del home
+    return Path(shutil.copytree(ROOT / "tests/fixtures/signals", tmp_path / "suites"))
 
 
-def of_middleware(rtf: str, suite: Path, results: Path) -> None:
-    """Samples are recorded; a monitor stops the test; an unknown field is an error."""
-    source = suite.stem
-    recorded(Run(rtf, str(suite), results / "recorded"))
+@each_source
+def test_samples_have_the_times_of_their_headers(
+    rtf: str, suites: Path, tmp_path: Path, source: str
+) -> None:
+    """Each topic has its rate."""
+    run = Run(rtf, str(suites / f"{source}.xml"), tmp_path / "results")
+    expect("exit code", run.wait(), 0)
+    points = samples(run)
+    expect("signals", set(points), {"elbow", "wrist", "battery"})
+    expect("joint states", len(points["elbow"]) > 20, True)
+    expect("fewer voltages", 2 < len(points["battery"]) < len(points["elbow"]) / 2, True)
+    expect("voltage", {value for _, value in points["battery"]}, {12.3})
+    (first, low), (last, high) = points["wrist"][0], points["wrist"][-1]
+    # The publisher counts, and a busy machine delays it.
+    expect("0.1 rad/s", 0 < (high - low) / (last - first) < 0.2, True)
+    expect("times of the test", 0 <= first < last < 60, True)
+
+
+@each_source
+def test_a_monitor_ends_the_test(rtf: str, suites: Path, tmp_path: Path, source: str) -> None:
+    suite = suites / f"{source}.xml"
     change(suite, *LOW)
-    stopped(Run(rtf, str(suite), results / "stopped"))
+    stopped(Run(rtf, str(suite), tmp_path / "results"))
+
+
+@each_source
+def test_a_field_that_messages_do_not_have_is_an_error(
+    rtf: str, suites: Path, tmp_path: Path, source: str
+) -> None:
+    suite = suites / f"{source}.xml"
+    change(suite, *LOW)
     change(suite, *UNKNOWN[source])
-    unknown(Run(rtf, str(suite), results / "unknown"), PROBLEMS[source])
+    run = Run(rtf, str(suite), tmp_path / "results")
+    expect("exit code", run.wait(), 1)
+    expect_in(PROBLEMS[source], output(run))
 
 
-def of_tests_and_recordings(rtf: str, suites: Path, results: Path) -> None:
-    """Monitors judge what a test reports, and afterwards its recording."""
-    own = str(suites / "own.xml")
-    run = Run(rtf, own, results / "own")
+@pytest.mark.venv("mcap")
+def test_monitors_judge_a_test_and_its_recording(rtf: str, suites: Path, tmp_path: Path) -> None:
+    run = Run(rtf, str(suites / "own.xml"), tmp_path / "own")
     expect("exit code", run.wait(), 0)
     # The samples of the test are not recorded twice.
     level = samples(run)["level"]
@@ -74,22 +79,35 @@ def of_tests_and_recordings(rtf: str, suites: Path, results: Path) -> None:
     robustness = measured(run)
     expect("0.9 V above the limit", round(robustness["monitor/full"], 6), 0.9)
     expect("the level rises", 0.2 < robustness["monitor/rises"] < 0.5, True)
-    recording = attached(run, ".mcap")
-    stopped(Run(rtf, own, results / "own-low", "--set", "limit=0.1"), "low")
+    of_recording(rtf, suites, tmp_path / "mcap", attached(run, ".mcap"), "/level")
+
+
+@pytest.mark.venv("mcap")
+def test_a_monitor_of_its_own_samples_ends_a_test(rtf: str, suites: Path, tmp_path: Path) -> None:
+    options = ["--set", "limit=0.1"]
+    stopped(Run(rtf, str(suites / "own.xml"), tmp_path / "results", *options), "low")
+
+
+@pytest.mark.venv("mcap")
+def test_another_unit_than_that_of_the_suite_is_an_error(
+    rtf: str, suites: Path, tmp_path: Path
+) -> None:
     change(suites / "own.xml", 'name="level" unit="m"', 'name="level" unit="cm"')
-    run = Run(rtf, own, results / "own-unit")
+    run = Run(rtf, str(suites / "own.xml"), tmp_path / "results")
     expect("exit code", run.wait(), 1)
     expect_in("the test reports `level` in `m`, but its unit in the suite is `cm`", output(run))
-    of_recording(rtf, suites, results / "mcap", recording, "/level")
 
 
-def of_bags(rtf: str, suites: Path, results: Path) -> None:
-    """A bag that ROS's own library has written."""
-    bag = results / "arm.bag"
+@pytest.mark.middleware("ros1")
+def test_monitors_judge_a_bag(
+    rtf: str, suites: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """ROS's own library has written it."""
+    bag = tmp_path / "arm.bag"
     # That of Debian's ROS 1.
-    os.environ["RTF_PYTHON"] = "/usr/bin/python3"
-    subprocess.run([os.environ["RTF_PYTHON"], suites / "write_bag.py", bag], check=True)
-    of_recording(rtf, suites, results / "bag", bag, "/joint_states.position[elbow]")
+    monkeypatch.setenv("RTF_PYTHON", "/usr/bin/python3")
+    call("/usr/bin/python3", suites / "write_bag.py", bag)
+    of_recording(rtf, suites, tmp_path / "bag", bag, "/joint_states.position[elbow]")
 
 
 def of_recording(rtf: str, suites: Path, results: Path, file: Path, topic: str) -> None:
@@ -123,30 +141,10 @@ def change(file: Path, old: str, new: str) -> None:
     file.write_text(text.replace(old, new))
 
 
-def recorded(run: Run) -> None:
-    """Each topic has its rate, and the times are those of the headers."""
-    expect("exit code", run.wait(), 0)
-    points = samples(run)
-    expect("signals", set(points), {"elbow", "wrist", "battery"})
-    expect("joint states", len(points["elbow"]) > 20, True)
-    expect("fewer voltages", 2 < len(points["battery"]) < len(points["elbow"]) / 2, True)
-    expect("voltage", {value for _, value in points["battery"]}, {12.3})
-    (first, low), (last, high) = points["wrist"][0], points["wrist"][-1]
-    # The publisher counts, and a busy machine delays it.
-    expect("0.1 rad/s", 0 < (high - low) / (last - first) < 0.2, True)
-    expect("times of the test", 0 <= first < last < 60, True)
-
-
 def stopped(run: Run, monitor: str = "wrist stays low") -> None:
     """A monitor ends the test."""
     expect("exit code", run.wait(), 1)
     expect_in(f"monitor `{monitor}`", run.reason("test-stopping"))
-
-
-def unknown(run: Run, problem: str) -> None:
-    """A value that the messages do not have."""
-    expect("exit code", run.wait(), 1)
-    expect_in(problem, output(run))
 
 
 def output(run: Run) -> str:
@@ -177,7 +175,3 @@ def samples(run: Run, test: str = "") -> dict[str, Points]:
         batch = event["samples"]
         found.setdefault(batch["name"], []).extend((time, value) for time, value in batch["points"])
     return found
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,23 +1,19 @@
-#!/usr/bin/env python3
-"""Injects wrong values into the topics and ports of real middleware.
-
-    check_proxies.py RTF DIRECTORY SOURCE
-
-SOURCE is `ros`, `ros2` or `yarp`, whose suite has this name in DIRECTORY.
-"""
+"""Injects wrong values into the topics and ports of real middleware."""
 
 from __future__ import annotations
 
 import itertools
 import math
 import os
-import signal
-import sys
-import tempfile
 from pathlib import Path
 
+import pytest
+from checkout import ROOT
+from processes import MARK, children, commands, kill, select
 from run import Event, Run, expect, expect_in
+from sources import each_source
 
+pytestmark = pytest.mark.usefixtures("home")
 Points = list[tuple[float, float]]
 
 # The arm publishes the sine of its time.
@@ -37,29 +33,24 @@ UNKNOWN = {
 JUMP_SECS = -2.0
 
 
-def main() -> int:
-    """Runs all; exits at the first difference."""
-    rtf, directory, source = str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]), sys.argv[3]
-    suite = str((directory / f"{source}.xml").resolve())
-    with tempfile.TemporaryDirectory() as name:
-        os.environ["ROS_HOME"] = os.environ["YARP_CONFIG_HOME"] = f"{name}/home"
-        for variable in ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP", "YARP_NAMESPACE"):
-            os.environ.pop(variable, None)
-        run = Run(rtf, suite, Path(name) / "values", "--filter", "not name(stay)")
-        expect("exit code", run.wait(), 1)
-        expect(
-            "verdicts",
-            run.verdicts(),
-            {"right": "passed", "offset": "failed", "injected": "passed", "unknown": "error"},
-        )
-        relayed(run)
-        shifted(run)
-        frozen_lossy_and_late(run)
-        expect_in(UNKNOWN[source], run.output.read_text())
-        killed(rtf, suite, Path(name) / "killed", name)
-        if source == "ros":
-            jumped(rtf, str((directory / "ros-clock.xml").resolve()), Path(name) / "clock")
-    return 0
+def suite_of(source: str) -> str:
+    """The suite of this name."""
+    return str(ROOT / f"tests/fixtures/proxies/{source}.xml")
+
+
+@each_source
+def test_faults_change_the_values_of_messages(rtf: str, tmp_path: Path, source: str) -> None:
+    run = Run(rtf, suite_of(source), tmp_path / "results", "--filter", "not name(stay)")
+    expect("exit code", run.wait(), 1)
+    expect(
+        "verdicts",
+        run.verdicts(),
+        {"right": "passed", "offset": "failed", "injected": "passed", "unknown": "error"},
+    )
+    relayed(run)
+    shifted(run)
+    frozen_lossy_and_late(run)
+    expect_in(UNKNOWN[source], run.output.read_text())
 
 
 def relayed(run: Run) -> None:
@@ -116,19 +107,21 @@ def frozen_lossy_and_late(run: Run) -> None:
     expect("in order", all(a < b for a, b in itertools.pairwise(values)), True)
 
 
-def killed(rtf: str, suite: str, results: Path, mark: str) -> None:
-    """After the death of the runner, nothing is left."""
-    run = Run(rtf, suite, results, "--filter", "name(stay)")
+@each_source
+def test_nothing_is_left_of_a_killed_runner(rtf: str, tmp_path: Path, source: str) -> None:
+    run = Run(rtf, suite_of(source), tmp_path / "results", "--filter", "name(stay)")
     run.wait_for(lambda event: event["type"] == "fault-injected")
-    (runner,) = [pid for pid in children(run.process.pid) if b"rtf" in command(pid)][:1]
-    os.kill(runner, signal.SIGKILL)
+    kill(children(run.process.pid))
     expect("exit code", run.wait(), 5)
-    expect("processes that are left", left(mark), [])
+    mark = f"{MARK}={os.environ[MARK]}"
+    left = select(lambda _, __, variables: mark in variables)
+    expect("processes that are left", commands(left), [])
 
 
-def jumped(rtf: str, suite: str, results: Path) -> None:
-    """The time of the robot jumps, and the test takes as long as without a jump."""
-    run = Run(rtf, suite, results)
+@pytest.mark.middleware("ros1")
+def test_the_time_of_the_robot_jumps(rtf: str, tmp_path: Path) -> None:
+    """The test takes as long as without a jump."""
+    run = Run(rtf, suite_of("ros-clock"), tmp_path / "results")
     expect("exit code", run.wait(), 0)
     start, end = fault(run, "back")
     expect("the time of the suite continues", 0.9 < end - start < 1.5, True)
@@ -143,30 +136,6 @@ def jumped(rtf: str, suite: str, results: Path) -> None:
     expect("right after it", max(map(abs, right)) < MARGIN_SECS, True)
 
 
-def children(parent: int) -> list[int]:
-    """The child processes of a process."""
-    text = Path(f"/proc/{parent}/task/{parent}/children").read_text()
-    return [int(word) for word in text.split()]
-
-
-def command(pid: int) -> bytes:
-    """The command line of a process."""
-    return Path(f"/proc/{pid}/cmdline").read_bytes()
-
-
-def left(mark: str) -> list[str]:
-    """The processes of the run, which have a directory in their environment."""
-    found = []
-    for process in Path("/proc").glob("[0-9]*"):
-        try:
-            environment = (process / "environ").read_bytes()
-            if int(process.name) != os.getpid() and mark.encode() in environment:
-                found.append((process / "cmdline").read_bytes().replace(b"\0", b" ").decode())
-        except OSError:
-            continue
-    return found
-
-
 def fault(run: Run, name: str) -> tuple[float, float]:
     """When a fault began and ended, since the start of its test."""
     started: dict[int, float] = {}
@@ -179,7 +148,7 @@ def fault(run: Run, name: str) -> tuple[float, float]:
             begin = at - started[event["test"]]
         elif event["type"] == "fault-removed" and event["name"] == name:
             return begin, at - started[event["test"]]
-    raise SystemExit(f"the fault {name} has no end")
+    raise AssertionError(f"the fault {name} has no end")
 
 
 def time_of(event: Event) -> float:
@@ -195,7 +164,3 @@ def signals(run: Run, test: str) -> dict[str, Points]:
             batch = event["samples"]
             found.setdefault(batch["name"], []).extend(map(tuple, batch["points"]))
     return found
-
-
-if __name__ == "__main__":
-    sys.exit(main())

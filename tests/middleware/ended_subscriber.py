@@ -1,9 +1,6 @@
-#!/usr/bin/env python3
 """Ends a subscriber of a replay in ROS 1: the next one of its name has not come yet.
 
-    check_ended_subscriber.py
-
-Needs Debian's Python with rospy and the library `mcap`.
+Needs Debian's Python with rospy, the library `mcap`, the harness and the fixtures.
 """
 
 from __future__ import annotations
@@ -16,13 +13,10 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
-from run import expect
-
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "fixtures"))
 from rtf_fixtures.replay.model import Kind
 from rtf_fixtures.replay.ros1_sender import Ros1Sender
+from run import expect
 
 # A busy machine is slow, not wrong.
 LIMIT_SECS = 60
@@ -37,7 +31,7 @@ rospy.spin()
 """
 
 
-def main() -> int:
+def main() -> None:
     """Runs a master, a sender and a subscriber."""
     with (
         tempfile.TemporaryDirectory() as directory,
@@ -61,7 +55,6 @@ def main() -> int:
                 missing = "the node /watcher does not subscribe to /level"
                 expect("after its end", sender.missing(SUBSCRIBERS), missing)
             sender.close()
-    return 0
 
 
 @contextmanager
@@ -91,4 +84,4 @@ def wait_until(condition: Callable[[], bool]) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()
