@@ -1,7 +1,4 @@
-#!/usr/bin/env python3
 """Runs the suites of example 06 in parallel, as a user does, and kills a node of one.
-
-    check_example_06.py RTF LEFT RIGHT
 
 No packet may leave the machine. A run with a shared domain proves that without isolation
 the suites hear each other and other machines hear them.
@@ -9,43 +6,47 @@ the suites hear each other and other machines hear them.
 
 from __future__ import annotations
 
-import os
-import sys
-import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import network
+import pytest
+from checkout import ROOT, STARTED_WITH
+from fastdds import left, private_memory
 from pages import run_fixture_page
-from processes import kill, running, shared_memory, variable
+from processes import kill, running, variable
 from run import Event, Run, expect, expect_in, is_a
 
+pytestmark = [pytest.mark.middleware("ros2"), pytest.mark.outside_network]
+EXAMPLE = ROOT / "examples/06-ros2"
+LEFT, RIGHT = str(EXAMPLE / "left.xml"), str(EXAMPLE / "right.xml")
 OWN = ("ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE")
 """The isolation of each suite: its domain, and discovery on this machine only."""
 
 
-def main() -> int:
-    """Runs all; exits at the first difference."""
-    network.move_in()
-    arguments = [str(Path(argument).resolve()) for argument in sys.argv[1:]]
-    before = shared_memory()
+@pytest.fixture
+def rtf(rtf: str, tmp_path: Path) -> Iterator[str]:
+    """The program, with separate shared memory."""
+    with private_memory(rtf, tmp_path / "program") as program:
+        yield program
+
+
+@pytest.fixture(autouse=True)
+def _nothing_is_left(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    if not network.is_inside():
+        # The process in the network installs nothing: it needs the same `python3`.
+        monkeypatch.setenv("PATH", STARTED_WITH["PATH"])
     for name in (*OWN, "ROS_LOG_DIR"):
-        os.environ.pop(name, None)
-    with tempfile.TemporaryDirectory() as directory:
-        with network.quiet("lesson 6"):
-            apart(Path(directory), *arguments)
-            killed(Path(directory), *arguments)
-            lesson = Path(arguments[1]).parent
-            run_fixture_page(arguments[0], "ros2launch", Path(directory) / "page", lesson)
-        together(Path(directory), *arguments)
-        expect("nodes left", running("joint.py"), [])
-        expect("shared memory left", shared_memory() - before, set())
-    return 0
+        monkeypatch.delenv(name, raising=False)
+    yield
+    expect("nodes left", running("joint.py"), [])
 
 
-def apart(directory: Path, rtf: str, left: str, right: str) -> None:
-    """In parallel, neither suite hears the other, and no packet leaves the machine."""
-    run = Run(rtf, left, directory / "apart", "--jobs", "2", right)
-    expect("exit code", run.wait(), 0)
+def test_suites_do_not_hear_each_other(rtf: str, tmp_path: Path) -> None:
+    """In parallel, and no packet leaves the machine."""
+    with network.quiet("lesson 6"):
+        run = Run(rtf, LEFT, tmp_path / "results", "--jobs", "2", RIGHT)
+        expect("exit code", run.wait(), 0)
     verdicts = outcomes(run)
     expect("tests", len(verdicts), 8)
     expect("verdicts", {verdict for _, _, verdict in verdicts}, {"passed"})
@@ -56,28 +57,32 @@ def apart(directory: Path, rtf: str, left: str, right: str) -> None:
     expect("nodes left", running("joint.py"), [])
 
 
-def together(directory: Path, rtf: str, left: str, right: str) -> None:
-    """In one domain with default discovery, they hear each other, and packets leave."""
+def test_suites_in_one_domain_hear_each_other(
+    rtf: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With default discovery, packets leave."""
     before = network.packets()
-    os.environ.update(zip(OWN, ("99", "SUBNET"), strict=True))
-    only = ["--set", "seconds=8", "--filter", "name(AloneTest)", "--jobs", "2", right]
-    run = Run(rtf, left, directory / "together", *only)
+    for name, value in zip(OWN, ("99", "SUBNET"), strict=True):
+        monkeypatch.setenv(name, value)
+    only = ["--set", "seconds=8", "--filter", "name(AloneTest)", "--jobs", "2", RIGHT]
+    run = Run(rtf, LEFT, tmp_path / "results", *only)
     expect("exit code in one domain", run.wait(), 1)
     heard = [each for each in outcomes(run) if each[2] == "failed"]
     expect("arms that are not alone, at least one", len(heard) > 0, True)
     expect("packets that left, at least one", network.packets() - before > 0, True)
+    expect("shared memory left", left(rtf), [])
 
 
-def killed(directory: Path, rtf: str, left: str, right: str) -> None:
-    """A node of the left suite is killed: its test collapses, and the right suite is unaffected."""
-    run = Run(rtf, left, directory / "killed", "--jobs", "2", right)
-    try:
-        run.wait_for(lambda event: is_running(run, event))
-        kill([joint for joint in running("joint.py") if variable(joint, "ROBOT") == "left"])
-    except BaseException:
-        run.stop()
-        raise
-    expect("exit code", run.wait(), 1)
+def test_a_killed_node_is_a_collapse_of_its_suite_only(rtf: str, tmp_path: Path) -> None:
+    with network.quiet("lesson 6"):
+        run = Run(rtf, LEFT, tmp_path / "results", "--jobs", "2", RIGHT)
+        try:
+            run.wait_for(lambda event: is_running(run, event))
+            kill([joint for joint in running("joint.py") if variable(joint, "ROBOT") == "left"])
+        except BaseException:
+            run.stop()
+            raise
+        expect("exit code", run.wait(), 1)
     expect_in("SIGKILL", run.reason())
     verdicts = outcomes(run)
     collapsed = [(suite, test) for suite, test, verdict in verdicts if verdict == "collapsed"]
@@ -86,6 +91,11 @@ def killed(directory: Path, rtf: str, left: str, right: str) -> None:
     told = (event["text"] for event in run.events("output"))
     cleaned = any("removed /dev/shm/fastdds_" in text for text in told)
     expect("shared memory of the dead node is removed", cleaned, True)
+
+
+def test_page(rtf: str, tmp_path: Path) -> None:
+    with network.quiet("lesson 6"):
+        run_fixture_page(rtf, "ros2launch", tmp_path / "page", EXAMPLE)
 
 
 def is_running(run: Run, event: Event) -> bool:
@@ -114,7 +124,3 @@ def are_parallel(run: Run) -> bool:
     kinds = [event["type"] for event in run.events()]
     order = [kind for kind in kinds if kind in {"suite-started", "suite-finished"}]
     return order[:2] == ["suite-started", "suite-started"]
-
-
-if __name__ == "__main__":
-    sys.exit(main())
