@@ -14,7 +14,7 @@ import uuid
 
 import network
 import pytest
-from checkout import BUILD, ROOT, TARGET, exports, venv
+from checkout import BUILD, ROOT, STARTED_WITH, TARGET, exports, venv
 
 # Tests as users write them, which rtf runs, and workspaces that tests copy.
 collect_ignore = [
@@ -115,8 +115,11 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
     if pyfuncitem.get_closest_marker("outside_network") is None or network.is_inside():
         return None
     options = ["-p", "no:xdist", "--no-build", "-s", "-q"]
-    pytest_here = [sys.executable, "-m", "pytest", *options, pyfuncitem.nodeid]
+    # xdist appends the group of a test.
+    name = pyfuncitem.nodeid.partition("@")[0]
+    pytest_here = [sys.executable, "-m", "pytest", *options, name]
     root = pyfuncitem.config.rootpath
-    ran = subprocess.run(network.command(pytest_here), cwd=root, check=False)
+    # Its markers change the environment again.
+    ran = subprocess.run(network.command(pytest_here), cwd=root, env=STARTED_WITH, check=False)
     assert ran.returncode == 0, "the test failed in its network"
     return True

@@ -1,4 +1,4 @@
-"""What somebody meets first: the bootstrap on a new machine, and the user's guide."""
+"""What a new user meets first: the bootstrap on a new machine, and the user's guide."""
 
 from __future__ import annotations
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from pathlib import Path
 
 import pytest
 from checkout import ROOT, call, venv
@@ -10,21 +11,13 @@ from checkout import ROOT, call, venv
 PYTHON = """
     examples fixtures packaging tools tests benches web/tests crates/rtf/templates
 """.split()
-TYPED = [
-    ["examples/01-simulated-arm", "tools"],
-    ["examples/02-supervised-simulator"],
-    ["examples/03-yarp"],
-    ["examples/04-icub"],
-    ["examples/05-ros1", "examples/05-ros1/rover/scripts"],
-    ["examples/06-ros2"],
-    ["examples/07-levels"],
-    ["examples/08-cases"],
-    ["examples/11-signals"],
-    *sorted(
-        [str(path.relative_to(ROOT))] for path in ROOT.glob("crates/rtf/templates/new/python/*")
-    ),
-]
-"""Directories whose modules may have the same names are checked apart."""
+UNTYPED = (
+    "tests/colcon/workspace",
+    "tests/frameworks/",
+    "tests/import/workspace",
+    "tests/install/",
+)
+"""Tests and programs as users write them, except the checks of frameworks."""
 
 SUITES = """
     :(glob)examples/*/*.xml crates/rtf/templates/*.xml tests/install/*.xml tests/wheel/*.xml
@@ -51,6 +44,17 @@ def files(*patterns: str, without: tuple[str, ...] = ()) -> list[str]:
     return present
 
 
+def typed() -> list[str]:
+    """The directories whose types are checked, apart: their modules may have the same names."""
+    # The campaign's scripts and the wheel's builder import what is only in their environments.
+    untyped = ("examples/10-campaign", "packaging/wheel")
+    modules = files("examples/*.py", "fixtures/*.py", "packaging/*.py", without=untyped)
+    modules += files("crates/rtf/templates/new/python/*.py", "tools/*.py", "benches/bench.py")
+    modules += files("tests/*.py", without=UNTYPED)
+    directories = {str(Path(module).parent) for module in modules}
+    return sorted(directories | {"tests/frameworks", "tests/frameworks/public"})
+
+
 def test_shell() -> None:
     call("shellcheck", *files("*.sh", ".ci/run"))
 
@@ -70,9 +74,10 @@ def test_python(command: str) -> None:
     call(venv("test") / "ruff", *command.split(), *PYTHON)
 
 
-@pytest.mark.parametrize("directories", TYPED, ids=lambda it: it[0])
-def test_python_types(directories: list[str]) -> None:
-    call(venv("test") / "mypy", *(path for it in directories for path in (ROOT / it).glob("*.py")))
+@pytest.mark.parametrize("directory", typed())
+def test_python_types(directory: str) -> None:
+    path = f"tests/debug:tests/executors:{directory}"
+    call(venv("test") / "mypy", *sorted((ROOT / directory).glob("*.py")), MYPYPATH=path)
 
 
 def test_ruby() -> None:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import network
 import pytest
-from checkout import ROOT, STARTED_WITH
+from checkout import ROOT
 from cpp_plugins import plugins
 from processes import kill, running
 from run import Run, expect, expect_in
@@ -19,9 +18,6 @@ VICTIM = "AccuracyTest"
 
 @pytest.fixture(autouse=True)
 def _plugins(monkeypatch: pytest.MonkeyPatch) -> None:
-    if not network.is_inside():
-        # The process in the network installs nothing: it needs the same `python3`.
-        monkeypatch.setenv("PATH", STARTED_WITH["PATH"])
     monkeypatch.setenv("RTF_PLUGIN_PATH", str(plugins("01-simulated-arm")))
 
 

@@ -10,7 +10,8 @@ from checkout import ROOT
 from processes import children, kill, running
 from run import Event, Run, expect, expect_in, is_a
 
-pytestmark = pytest.mark.venv("demo")
+# The simulator has a fixed port.
+pytestmark = [pytest.mark.venv("demo"), pytest.mark.outside_network]
 SUITE = ROOT / "examples/02-supervised-simulator/supervised.xml"
 RUNNER_DIED = 5
 SWEEP_SECS = 6

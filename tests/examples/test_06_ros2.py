@@ -11,7 +11,7 @@ from pathlib import Path
 
 import network
 import pytest
-from checkout import ROOT, STARTED_WITH
+from checkout import ROOT
 from fastdds import left, private_memory
 from pages import run_fixture_page
 from processes import kill, running, variable
@@ -33,9 +33,6 @@ def rtf(rtf: str, tmp_path: Path) -> Iterator[str]:
 
 @pytest.fixture(autouse=True)
 def _nothing_is_left(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    if not network.is_inside():
-        # The process in the network installs nothing: it needs the same `python3`.
-        monkeypatch.setenv("PATH", STARTED_WITH["PATH"])
     for name in (*OWN, "ROS_LOG_DIR"):
         monkeypatch.delenv(name, raising=False)
     yield

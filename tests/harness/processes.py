@@ -75,8 +75,3 @@ def kill(pids: list[int], number: signal.Signals = signal.SIGKILL) -> None:
     """Sends a signal to a process, which must be the only one."""
     (pid,) = pids
     os.kill(pid, number)
-
-
-def shared_memory() -> set[str]:
-    """The files of Fast DDS in shared memory."""
-    return {file.name for file in Path("/dev/shm").glob("*fastdds_*")}

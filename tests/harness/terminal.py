@@ -15,7 +15,7 @@ SECONDS = 120.0
 
 
 def _keep_output_at_signals() -> None:
-    """Otherwise, the kernel drops what was printed just after Ctrl-C was typed."""
+    """Otherwise, the kernel drops output that follows a typed Ctrl-C."""
     settings = termios.tcgetattr(0)
     settings[3] |= termios.NOFLSH
     termios.tcsetattr(0, termios.TCSANOW, settings)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import network
 import pytest
-from checkout import ROOT, STARTED_WITH
+from checkout import ROOT
 from run import Run, expect
 
 pytestmark = [pytest.mark.middleware("ros2"), pytest.mark.outside_network]
@@ -27,9 +27,6 @@ VARIABLES = (
 
 @pytest.fixture(autouse=True)
 def _without_settings(monkeypatch: pytest.MonkeyPatch) -> None:
-    if not network.is_inside():
-        # The process in the network installs nothing: it needs the same `python3`.
-        monkeypatch.setenv("PATH", STARTED_WITH["PATH"])
     for name in VARIABLES:
         monkeypatch.delenv(name, raising=False)
 
