@@ -25,5 +25,5 @@ for argument in "$@"; do
   esac
 done
 # More checks than processors, because many wait. A group is for what must not run twice at a time.
-[ -z "$where" ] || options+=(-n "$((JOBS + 2))" --dist loadgroup --no-loadscope-reorder)
+[ -z "$where" ] || options+=(-n "$((JOBS + 1))" --dist loadgroup --no-loadscope-reorder)
 exec "$checkers/pytest" "${options[@]}" "$@" ${where:+"$where"}
