@@ -17,6 +17,8 @@ import pytest
 from checkout import BUILD, ROOT, STARTED_WITH, TARGET, exports, venv
 
 # Tests as users write them, which rtf runs, and workspaces that tests copy.
+# Tests of the fixture managers, which import them, run apart: one is named `mcap`, as a library.
+collect_ignore_glob = ["fixtures/test_*.py"]
 collect_ignore = [
     "colcon/workspace",
     "ctest/project",

@@ -1,4 +1,4 @@
-"""The SDKs in Python and Ruby, with their own tools. `cargo test` has those of other languages."""
+"""The SDKs in Python and Ruby and the fixture managers. `cargo test` has the other languages."""
 
 from __future__ import annotations
 
@@ -15,6 +15,15 @@ RUBY = ROOT / "sdk/ruby"
 def test_python(tool: str) -> None:
     program, *arguments = tool.split()
     call(venv("test") / program, *arguments, cwd=PYTHON)
+
+
+@pytest.mark.parametrize(
+    "file", sorted((ROOT / "tests/fixtures").glob("test_*.py")), ids=lambda it: it.stem
+)
+def test_fixture_managers(file: Path) -> None:
+    options = ["-q", "-p", "no:cacheprovider", "-c", "/dev/null"]
+    options += [f"--rootdir={file.parent}", f"--confcutdir={file.parent}"]
+    call(venv("test") / "pytest", *options, file)
 
 
 @pytest.mark.parametrize("file", sorted(RUBY.glob("test/*_test.rb")), ids=lambda it: it.stem)
