@@ -12,8 +12,15 @@ fn read(file: &str) -> String {
     std::fs::read_to_string(root().join(file)).expect(file)
 }
 
+fn pattern(pattern: &str) -> Regex {
+    Regex::new(pattern).expect("a pattern")
+}
+
 fn found(pattern: &str, text: &str) -> BTreeSet<String> {
-    let pattern = Regex::new(pattern).expect("a pattern");
+    found_by(&self::pattern(pattern), text)
+}
+
+fn found_by(pattern: &Regex, text: &str) -> BTreeSet<String> {
     pattern.captures_iter(text).map(|captures| captures[1].to_owned()).collect()
 }
 
@@ -59,9 +66,10 @@ fn every_environment_variable() {
     let code = ["rs", "py", "rb", "lua", "h", "hpp", "adb", "sh"];
     // The names of ports, parameters and values are parts of the names of their variables.
     let formats = [
-        (r#""(RTF_[A-Z]+_)\{\w*\}""#, "NAME"),
-        (r#""(RTF_[A-Z]+_)\{\w*\}_\{\w*\}""#, "NAME_VALUE"),
+        (pattern(r#""(RTF_[A-Z]+_)\{\w*\}""#), "NAME"),
+        (pattern(r#""(RTF_[A-Z]+_)\{\w*\}_\{\w*\}""#), "NAME_VALUE"),
     ];
+    let quoted = pattern(r#"["'=](RTF_[A-Z_]+)["'=]"#);
     let mut used = BTreeSet::new();
     for file in ["crates", "sdk", "fixtures"].iter().flat_map(|folder| below(folder, &code)) {
         // No user runs it.
@@ -70,9 +78,9 @@ fn every_environment_variable() {
         }
         let text = std::fs::read_to_string(&file).expect("a file");
         let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
-        used.extend(found(r#"["'=](RTF_[A-Z_]+)["'=]"#, text));
-        for (format, names) in formats {
-            used.extend(found(format, text).iter().map(|start| format!("{start}{names}")));
+        used.extend(found_by(&quoted, text));
+        for (format, names) in &formats {
+            used.extend(found_by(format, text).iter().map(|start| format!("{start}{names}")));
         }
     }
     // The beginnings of such names.
