@@ -1,8 +1,10 @@
 //! A temporary directory with suites and plug-ins, and the real runner in it.
 
+use std::collections::BTreeSet;
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 use regex::Regex;
@@ -352,8 +354,12 @@ fn build_hosts() {
         let bins = Path::new(env!("CARGO_BIN_EXE_rtf")).parent().expect("a folder");
         let release = bins.ends_with("release");
         let mut cargo = Command::new(env!("CARGO"));
-        cargo.args(["build", "--quiet", "-p", "rtf-host-native", "-p", "rtf-host-lua"]);
-        cargo.args(["-p", "rtf-frameworks", "-p", "rtf-host-signals", "-p", "rtf-host-faults"]);
+        // With `-p`, libraries have other features than in a build of the workspace, and are compiled
+        // a second time.
+        cargo.args(["build", "--quiet", "--workspace"]);
+        for host in ["native", "lua", "framework", "signals", "faults"] {
+            cargo.args(["--bin", &format!("rtf-host-{host}")]);
+        }
         cargo.args(release.then_some("--release")).current_dir(root());
         assert!(cargo.status().expect("cargo").success(), "the hosts build");
     });
@@ -367,10 +373,14 @@ pub fn build_cpp(sources: &Path, name: &str) -> PathBuf {
 
 /// The same with further compiler flags, for each of which there is a folder.
 pub fn build_cpp_with(sources: &Path, name: &str, flags: &str) -> PathBuf {
-    static ONE_AT_A_TIME: std::sync::Mutex<()> = std::sync::Mutex::new(());
-    let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    // What this program has built, one folder at a time.
+    static BUILT: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
     let folder = format!("{name}{}", flags.replace([' ', '=', ','], "-"));
     let build = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
+    if built.contains(&build) {
+        return build;
+    }
     let package =
         root().canonicalize().expect("a path").join("sdk/cpp/cmake/RobotTestingFramework");
     let mut configure = Command::new("cmake");
@@ -379,27 +389,68 @@ pub fn build_cpp_with(sources: &Path, name: &str, flags: &str) -> PathBuf {
     configure.arg(format!("-DCMAKE_CXX_FLAGS={flags}"));
     run_quietly(&mut configure);
     run_quietly(Command::new("cmake").arg("--build").arg(&build).args(["--parallel", "2"]));
+    built.insert(build.clone());
     build
 }
 
 /// Builds Ada plug-ins, one for each value of a project's variable; returns the
 /// folder with `<value>/`.
 pub fn build_ada(project: &Path, variable: &str, values: &[String]) -> PathBuf {
-    static ONE_AT_A_TIME: std::sync::Mutex<()> = std::sync::Mutex::new(());
-    let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    // What this program has built, one plug-in at a time.
+    static BUILT: Mutex<BTreeSet<(PathBuf, String)>> = Mutex::new(BTreeSet::new());
+    let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
     let name = project.file_stem().expect("a name").to_string_lossy();
     let build = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-ada"));
+    let objects = |value: &str| build.join("obj").join(value);
     for value in values {
+        let key = (build.clone(), value.clone());
+        if built.contains(&key) {
+            continue;
+        }
+        let first = built.range((build.clone(), String::new())..).next();
+        if let Some((_, first)) = first.filter(|(of, _)| *of == build) {
+            copy_sdk_objects(&objects(first), &objects(value));
+        }
         let build = format!("-XBUILD={}", build.display());
         gprbuild(project, &[format!("-X{variable}={value}"), build]);
+        built.insert(key);
     }
     build
+}
+
+/// Copies the objects of the Ada SDK from one plug-in to another of the same project, which is compiled
+/// with the same switches. `gprbuild` compiles what does not match its sources.
+fn copy_sdk_objects(from: &Path, to: &Path) {
+    if to.exists() {
+        return;
+    }
+    std::fs::create_dir_all(to).expect("a folder");
+    for entry in from.read_dir().expect("a folder of objects").flatten() {
+        if entry.file_name().to_string_lossy().starts_with("robottestingframework") {
+            let copy = to.join(entry.file_name());
+            let modified = entry.metadata().expect("a file").modified().expect("a time");
+            std::fs::copy(entry.path(), &copy).expect("a copy");
+            let copy = std::fs::File::options().write(true).open(copy).expect("the copy");
+            copy.set_modified(modified).expect("a time");
+        }
+    }
+}
+
+/// What `gprconfig` finds out about the compiler, once and not in each `gprbuild`.
+fn ada_compiler() -> &'static Path {
+    static FOUND: OnceLock<PathBuf> = OnceLock::new();
+    FOUND.get_or_init(|| {
+        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ada.cgpr");
+        run_quietly(Command::new("gprconfig").args(["--batch", "--config=ada", "-o"]).arg(&file));
+        file
+    })
 }
 
 /// Builds an Ada project with the SDK's sources.
 pub fn gprbuild(project: &Path, more: &[String]) {
     let sdk = root().canonicalize().expect("a path").join("sdk/ada");
     let mut gprbuild = Command::new("gprbuild");
+    gprbuild.arg(format!("--config={}", ada_compiler().display()));
     gprbuild.args(["-p", "-q", "-j2", "-P"]).arg(project).args(more);
     run_quietly(gprbuild.env("GPR_PROJECT_PATH", &sdk));
 }
