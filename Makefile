@@ -14,7 +14,7 @@ help:
 	@echo "make web        build the page that rtf serves (included in make build)"
 	@echo "make wheels     build and test the wheels for pip, x86-64 and aarch64 (half an hour)"
 	@echo "make test       run all checks: Rust, SDKs, examples, lints, installation"
-	@echo "make test-quick the same without steps that need middleware (ROS, YARP), which it lists"
+	@echo "make test-quick the same without tests that need middleware (ROS, YARP)"
 	@echo "make chaos      kill fixtures, hosts and runners at random moments, for half an hour"
 	@echo "make fuzz       give arbitrary bytes to all parsers, each for SECONDS (60)"
 	@echo "make sanitizers run C++ and Lua tests with GCC's sanitizers and valgrind"

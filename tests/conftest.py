@@ -11,14 +11,15 @@ import os
 import subprocess
 import sys
 import uuid
+from collections.abc import Generator
 
 import network
 import pytest
 from checkout import BUILD, ROOT, STARTED_WITH, TARGET, exports, venv
 
-# Tests as users write them, which rtf runs, and workspaces that tests copy.
 # Tests of the fixture managers, which import them, run apart: one is named `mcap`, as a library.
 collect_ignore_glob = ["fixtures/test_*.py"]
+# Tests as users write them, which rtf runs, and workspaces that tests copy.
 collect_ignore = [
     "colcon/workspace",
     "ctest/project",
@@ -63,9 +64,15 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     # A test that failed while it was set up or torn down may be in both lists.
     for name in dict.fromkeys(each.nodeid.partition("@")[0] for each in failed):
         terminalreporter.write_line(f"failed: tools/test.sh 'tests/{name}'", red=True)
-    skipped = terminalreporter.getreports("skipped")
-    if skipped:
-        terminalreporter.write_line(f"{len(skipped)} skipped: a test that lacks something fails")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Makes a skipped test fail: it installs what it lacks."""
+    report = yield
+    if report.skipped:
+        report.outcome = "failed"
+    return report
 
 
 @pytest.fixture(scope="session")

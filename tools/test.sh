@@ -21,7 +21,7 @@ where=tests
 for argument in "$@"; do
   case $argument in
     *::*) where='' options+=(-s) ;;
-    *) [ ! -e "$argument" ] || where='' ;;
+    tests | tests/* | */tests/*) where='' ;;
   esac
 done
 # More checks than processors, because many wait. A group is for what must not run twice at a time.

@@ -217,8 +217,7 @@ def test_gdb_attaches_to_a_waiting_test(bench: Bench) -> None:
         assert run.stderr
         line = run.stderr.readline()
         pid = re.match(r"debug: process (\d+) waits for a debugger; .* kill -USR1 (\d+)$", line)
-        assert pid is not None, line
-        assert pid
+        assert pid, line
         time.sleep(2 * LIMIT)
         commands = [
             "set breakpoint pending on",
