@@ -28,8 +28,8 @@ CONNECTION = "/sensor/values:o -> /smoother/values:i"
 @pytest.fixture(autouse=True)
 def runs(rtf: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[YarpRuns]:
     """The environment is that of the lesson."""
-    built = plugins("03-yarp")
     monkeypatch.setenv("RTF_DIR", str(ROOT / "sdk/cpp/cmake/rtf"))
+    built = plugins("03-yarp")
     monkeypatch.setenv("RTF_PLUGIN_PATH", str(built))
     monkeypatch.setenv("PATH", str(built), prepend=":")
     with quiet_runs(rtf, EXAMPLE, tmp_path) as started:

@@ -84,6 +84,8 @@ impl Folder {
             "GITHUB_WORKSPACE",
             "GITLAB_CI",
             "CI_PROJECT_DIR",
+            // The width of help.
+            "COLUMNS",
         ] {
             command.env_remove(variable);
         }
