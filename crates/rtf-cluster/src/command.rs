@@ -43,19 +43,6 @@ pub enum ClusterError {
     },
 }
 
-impl ClusterError {
-    /// What the user can do about it.
-    pub fn hint(&self) -> Option<&'static str> {
-        match self {
-            Self::Execute { command, .. } if command.starts_with("kubectl") => {
-                Some("install `kubectl`, and let its configuration name the cluster")
-            }
-            Self::Execute { .. } => Some("run `rtf` on a machine with Slurm's commands on PATH"),
-            Self::Failed { .. } | Self::Invalid { .. } | Self::File { .. } => None,
-        }
-    }
-}
-
 /// A command that a terminal's signals do not reach.
 pub fn command(name: &'static str) -> Command {
     let mut command = Command::new(name);

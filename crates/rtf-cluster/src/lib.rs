@@ -1,6 +1,6 @@
 //! A job in a cluster whose tasks each execute a command: submitted, listed, stopped. Knows neither
-//! suites nor tests. The scheduler is Slurm ([`slurm`]) or Kubernetes ([`kubernetes`]), driven by
-//! its commands.
+//! suites nor tests. The [`Scheduler`] is Slurm ([`slurm`]) or Kubernetes ([`kubernetes`]), driven
+//! by its commands.
 
 mod command;
 pub mod kubernetes;
@@ -11,6 +11,7 @@ use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use async_trait::async_trait;
 use serde::{Deserialize, Serialize};
 
 pub use command::ClusterError;
@@ -46,6 +47,8 @@ pub struct JobArray<'a> {
     pub working_dir: &'a Path,
     /// The verb of `rtf` and its arguments.
     pub command: &'a [String],
+    /// The resources of which each task gets one: ASCII letters, digits, `_`, `-` and `.`.
+    pub resources: &'a [String],
 }
 
 /// A job that was submitted.
@@ -75,13 +78,64 @@ pub struct TaskState {
     pub is_waiting: bool,
 }
 
+/// Where the tasks of a job run.
+#[async_trait]
+trait Scheduler: Sync {
+    /// The name of the executor, as on the command line.
+    fn name(&self) -> &'static str;
+
+    /// How the user gets the commands of the scheduler.
+    fn install_hint(&self) -> &'static str;
+
+    /// Submits the tasks, unless `is_resumed` and the scheduler knows the name of the job. Returns
+    /// its id, which is also stored. `lock` is locked until the command of the scheduler has ended.
+    async fn submit(
+        &self,
+        array: &JobArray<'_>,
+        is_resumed: bool,
+        lock: &File,
+    ) -> Result<String, ClusterError>;
+
+    /// Prepares the directory of a job that the user submits. Returns its manifest, if the scheduler
+    /// has such a thing.
+    async fn manifest(&self, _: &JobArray<'_>) -> Result<Option<String>, ClusterError> {
+        Ok(None)
+    }
+
+    /// The tasks that have not ended.
+    async fn state(&self, job: &str, tasks: &[u32]) -> Result<JobState, ClusterError>;
+
+    /// Removes the tasks that wait.
+    async fn cancel_waiting(&self, job: &str) -> Result<(), ClusterError>;
+
+    /// Lets tasks that run tear down and end. A repeated request ends them without a tear-down.
+    async fn terminate(
+        &self,
+        job: &str,
+        tasks: &[u32],
+        is_repeated: bool,
+    ) -> Result<(), ClusterError>;
+
+    /// Kills all tasks.
+    async fn cancel(&self, job: &str) -> Result<(), ClusterError>;
+}
+
 impl Cluster {
+    fn scheduler(&self) -> &dyn Scheduler {
+        match self {
+            Self::Slurm(slurm) => slurm,
+            Self::Kubernetes(kubernetes) => kubernetes,
+        }
+    }
+
     /// The name of the executor, as on the command line.
     pub fn name(&self) -> &'static str {
-        match self {
-            Self::Slurm(_) => "slurm",
-            Self::Kubernetes(_) => "kubernetes",
-        }
+        self.scheduler().name()
+    }
+
+    /// What the user can do about an error.
+    pub fn hint(&self, error: &ClusterError) -> Option<&'static str> {
+        matches!(error, ClusterError::Execute { .. }).then(|| self.scheduler().install_hint())
     }
 
     /// Submits a job, unless `is_resumed` and an earlier process has submitted it. `lock` is locked
@@ -93,49 +147,39 @@ impl Cluster {
         lock: &File,
     ) -> Result<Job, ClusterError> {
         let stored = if is_resumed { stored_job(array.dir)? } else { None };
-        let id = match (stored, self) {
-            (Some(id), _) => id,
-            (None, Self::Slurm(slurm)) => slurm.submit(array, is_resumed, lock).await?,
-            (None, Self::Kubernetes(kubernetes)) => {
-                kubernetes.submit(array, is_resumed, lock).await?
-            }
+        let id = match stored {
+            Some(id) => id,
+            None => self.scheduler().submit(array, is_resumed, lock).await?,
         };
         Ok(Job { cluster: self.clone(), id, tasks: array.tasks.to_vec() })
+    }
+
+    /// Prepares the directory of a job that the user submits. Returns its manifest, if the scheduler
+    /// has such a thing.
+    pub async fn manifest(&self, array: &JobArray<'_>) -> Result<Option<String>, ClusterError> {
+        self.scheduler().manifest(array).await
     }
 }
 
 impl Job {
     /// The tasks that have not ended.
     pub async fn state(&self) -> Result<JobState, ClusterError> {
-        match &self.cluster {
-            Cluster::Slurm(_) => slurm::state(&self.id).await,
-            Cluster::Kubernetes(kubernetes) => kubernetes.state(&self.id, &self.tasks).await,
-        }
+        self.cluster.scheduler().state(&self.id, &self.tasks).await
     }
 
     /// Removes the tasks that wait.
     pub async fn cancel_waiting(&self) -> Result<(), ClusterError> {
-        match &self.cluster {
-            Cluster::Slurm(_) => slurm::cancel_waiting(&self.id).await,
-            Cluster::Kubernetes(kubernetes) => kubernetes.delete(&self.id).await,
-        }
+        self.cluster.scheduler().cancel_waiting(&self.id).await
     }
 
     /// Lets tasks that run tear down and end. A repeated request ends them without a tear-down.
     pub async fn terminate(&self, tasks: &[u32], is_repeated: bool) -> Result<(), ClusterError> {
-        match &self.cluster {
-            Cluster::Slurm(_) => slurm::terminate(&self.id, tasks).await,
-            Cluster::Kubernetes(kubernetes) if is_repeated => kubernetes.kill(&self.id).await,
-            Cluster::Kubernetes(kubernetes) => kubernetes.delete(&self.id).await,
-        }
+        self.cluster.scheduler().terminate(&self.id, tasks, is_repeated).await
     }
 
     /// Kills all tasks.
     pub async fn cancel(&self) -> Result<(), ClusterError> {
-        match &self.cluster {
-            Cluster::Slurm(_) => slurm::cancel(&self.id).await,
-            Cluster::Kubernetes(kubernetes) => kubernetes.kill(&self.id).await,
-        }
+        self.cluster.scheduler().cancel(&self.id).await
     }
 }
 

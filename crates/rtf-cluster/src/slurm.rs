@@ -4,12 +4,13 @@
 
 use std::fs::File;
 
+use async_trait::async_trait;
 use serde::{Deserialize, Serialize};
 
 use super::command::{command, execute, run};
 use super::{
-    ClusterError, JOB, JobArray, JobState, OUTPUTS, SCRIPT, TaskState, create_dir, parse_job,
-    stored_job, write,
+    ClusterError, JOB, JobArray, JobState, OUTPUTS, SCRIPT, Scheduler, TaskState, create_dir,
+    parse_job, stored_job, write,
 };
 
 /// Calls a program with the number and the attempt of the task, in the option `--array-task`.
@@ -35,9 +36,17 @@ pub struct Slurm {
     pub options: Vec<String>,
 }
 
-impl Slurm {
-    /// Submits the tasks, unless `is_resumed` and Slurm knows the name of the job. Returns its id.
-    pub async fn submit(
+#[async_trait]
+impl Scheduler for Slurm {
+    fn name(&self) -> &'static str {
+        "slurm"
+    }
+
+    fn install_hint(&self) -> &'static str {
+        "run `rtf` on a machine with Slurm's commands on PATH"
+    }
+
+    async fn submit(
         &self,
         array: &JobArray<'_>,
         is_resumed: bool,
@@ -60,6 +69,7 @@ impl Slurm {
             .arg(format!("--array={}", ranges(array.tasks)))
             .arg(format!("--job-name={}", array.name))
             .arg(format!("--output={output}/%a.txt"))
+            .args(licenses(array.resources))
             .arg("--chdir")
             .arg(array.working_dir)
             .args(&self.options)
@@ -75,6 +85,37 @@ impl Slurm {
             message: "it printed no job id".to_owned(),
         })
     }
+
+    async fn state(&self, job: &str, _: &[u32]) -> Result<JobState, ClusterError> {
+        let mut squeue = command("squeue");
+        squeue.args(["--noheader", "--array", "--format=%K %T %r"]).arg(format!("--jobs={job}"));
+        match run("squeue", squeue).await {
+            Ok(text) => {
+                let mut state = JobState::default();
+                text.lines().for_each(|line| _ = add_task(&mut state, line));
+                Ok(state)
+            }
+            // Slurm forgets a job some minutes after its end.
+            Err(ClusterError::Failed { message, .. }) if message.contains("Invalid job id") => {
+                Ok(JobState::default())
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    async fn cancel_waiting(&self, job: &str) -> Result<(), ClusterError> {
+        scancel(["--state=PENDING", job]).await
+    }
+
+    /// Sends SIGTERM to the program of some tasks, and not to its children.
+    async fn terminate(&self, job: &str, tasks: &[u32], _: bool) -> Result<(), ClusterError> {
+        let tasks = format!("{job}_[{}]", ranges(tasks));
+        scancel(["--batch", "--signal=TERM", &tasks]).await
+    }
+
+    async fn cancel(&self, job: &str) -> Result<(), ClusterError> {
+        scancel([job]).await
+    }
 }
 
 /// The job with a name, if Slurm has not forgotten it.
@@ -82,24 +123,6 @@ async fn find_job(name: &str) -> Result<Option<String>, ClusterError> {
     let mut squeue = command("squeue");
     squeue.args(["--noheader", "--states=all", "--format=%F"]).arg(format!("--name={name}"));
     Ok(parse_job(&run("squeue", squeue).await?))
-}
-
-/// The tasks that have not ended.
-pub async fn state(job: &str) -> Result<JobState, ClusterError> {
-    let mut squeue = command("squeue");
-    squeue.args(["--noheader", "--array", "--format=%K %T %r"]).arg(format!("--jobs={job}"));
-    match run("squeue", squeue).await {
-        Ok(text) => {
-            let mut state = JobState::default();
-            text.lines().for_each(|line| _ = add_task(&mut state, line));
-            Ok(state)
-        }
-        // Slurm forgets a job some minutes after its end.
-        Err(ClusterError::Failed { message, .. }) if message.contains("Invalid job id") => {
-            Ok(JobState::default())
-        }
-        Err(error) => Err(error),
-    }
 }
 
 /// Adds the task of a line of `squeue`.
@@ -115,25 +138,16 @@ fn add_task(state: &mut JobState, line: &str) -> Option<()> {
     Some(())
 }
 
-/// Removes the tasks that wait.
-pub async fn cancel_waiting(job: &str) -> Result<(), ClusterError> {
+async fn scancel<const N: usize>(args: [&str; N]) -> Result<(), ClusterError> {
     let mut scancel = command("scancel");
-    scancel.args(["--state=PENDING", job]);
+    scancel.args(args);
     run("scancel", scancel).await.map(drop)
 }
 
-/// Sends SIGTERM to the program of some tasks, and not to its children.
-pub async fn terminate(job: &str, tasks: &[u32]) -> Result<(), ClusterError> {
-    let mut scancel = command("scancel");
-    scancel.args(["--batch", "--signal=TERM"]).arg(format!("{job}_[{}]", ranges(tasks)));
-    run("scancel", scancel).await.map(drop)
-}
-
-/// Kills all tasks.
-pub async fn cancel(job: &str) -> Result<(), ClusterError> {
-    let mut scancel = command("scancel");
-    scancel.arg(job);
-    run("scancel", scancel).await.map(drop)
+/// The option that requests a licence of each resource, if there is any.
+fn licenses(resources: &[String]) -> Option<String> {
+    let licenses: Vec<_> = resources.iter().map(|name| format!("{name}:1")).collect();
+    (!licenses.is_empty()).then(|| format!("--licenses={}", licenses.join(",")))
 }
 
 /// Formats ascending numbers as `1-3,7`.

@@ -31,8 +31,9 @@ use rtf_run::request::{OutputRequest, TestsRequest};
 use rtf_run::{VerbResult, plan, reports, terminal};
 
 pub use array_task::{ArrayTask, last_attempt};
-pub use options::{ClusterOptions, Executor, KubernetesOptions, cluster, refuse_unused, shards};
-pub use submission::Submission;
+pub use options::ClusterOptions;
+pub use stop::STOP_GRACE;
+pub use submission::{Submission, text};
 
 /// The file with the exit code of an attempt.
 pub const EXIT_CODE: &str = "exit-code";
@@ -49,17 +50,15 @@ pub struct CollectRequest {
     pub shutdown_timeout: Duration,
 }
 
-/// Submits the tests, of which `tests` has the number of shards, follows and merges them.
-pub fn run(options: &ClusterOptions, tests: TestsRequest, request: &CollectRequest) -> VerbResult {
-    let shards = shards(options)?;
+/// Submits the tests, which are divided into shards, follows and merges them.
+pub fn run(options: ClusterOptions, tests: TestsRequest, request: &CollectRequest) -> VerbResult {
     // Reports are written at the end, but unusable paths are reported now.
     let output = &request.output;
     drop(reports::open_all(&output.reports, &output.results)?);
     let (tasks, plan) = plan_all(tests)?;
-    let cluster = cluster(options, &plan, &output.results, request.shutdown_timeout)?;
-    let cluster = cluster.ok_or_else(|| Failure::internal("there is no cluster"))?;
-    let submission = Submission::create(&output.results, shards, &plan, tasks, cluster)?;
-    match options.kubernetes.print {
+    let print = options.print;
+    let submission = Submission::create(&output.results, options, &plan, tasks)?;
+    match print {
         true => print_job(&submission),
         false => supervise(&submission, request),
     }
@@ -78,14 +77,14 @@ fn print_job(submission: &Submission) -> VerbResult {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Prints the manifest of a Job of Kubernetes to standard output.
+/// Prints the manifest of a job to standard output.
 pub fn print_manifest(cluster: &Cluster, array: &JobArray<'_>) -> Result<(), Failure> {
-    let Cluster::Kubernetes(kubernetes) = cluster else {
-        return Err(Failure::internal("only Kubernetes has a manifest"));
-    };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(Failure::internal)?;
-    let manifest = runtime.block_on(kubernetes.prepare(array)).map_err(cluster_failure)?;
+    let manifest = runtime.block_on(cluster.manifest(array));
+    let manifest = manifest.map_err(|error| cluster_failure(cluster, error))?;
+    let no_manifest = || Failure::internal(format!("{} has no manifest", cluster.name()));
+    let manifest = manifest.ok_or_else(no_manifest)?;
     terminal::stdout(|out| out.write_all(manifest.as_bytes()))
 }
 
@@ -105,7 +104,7 @@ pub fn supervise(submission: &Submission, request: &CollectRequest) -> VerbResul
     let stopped_by = runtime.map_err(Failure::internal)?.block_on(async {
         let job = submit(submission, &lock).await.map_err(|error| {
             submission.discard();
-            cluster_failure(error)
+            cluster_failure(&submission.stored.cluster, error)
         })?;
         follow::follow(&job, submission, request.shutdown_timeout).await
     })?;
@@ -132,11 +131,12 @@ fn job_array<'a>(submission: &'a Submission, command: &'a [String]) -> JobArray<
         tasks: &stored.tasks,
         working_dir: Path::new(&stored.working_dir),
         command,
+        resources: &stored.resources,
     }
 }
 
 /// A command of the scheduler failed.
-pub fn cluster_failure(error: ClusterError) -> Failure {
-    let hint = error.hint();
+pub fn cluster_failure(cluster: &Cluster, error: ClusterError) -> Failure {
+    let hint = cluster.hint(&error);
     Failure::input(error).maybe_hint(hint)
 }

@@ -11,7 +11,7 @@ use rtf_run::error::Failure;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
-use crate::last_attempt;
+use crate::{ClusterOptions, last_attempt};
 
 /// The directory of all submissions in a results directory: hidden, so that `rtf-results/*` names
 /// runs only.
@@ -45,6 +45,9 @@ pub struct Stored {
     pub tasks: Vec<u32>,
     /// The number of tests of all shards.
     pub tests: u32,
+    /// The resources that are requested for each task.
+    #[serde(default)]
+    pub resources: Vec<String>,
     /// Where it is submitted, and how.
     pub cluster: Cluster,
 }
@@ -53,10 +56,9 @@ impl Submission {
     /// Creates the directory, below `results`, of a submission of this process.
     pub fn create(
         results: &Path,
-        shards: u32,
+        options: ClusterOptions,
         plan: &Plan,
         tasks: Vec<u32>,
-        cluster: Cluster,
     ) -> Result<Self, Failure> {
         let name = format!("rtf-{}", &Uuid::now_v7().simple().to_string());
         let dir = std::path::absolute(results.join(DIR).join(&name));
@@ -66,10 +68,11 @@ impl Submission {
             name,
             args: run_arguments(std::env::args_os().skip(1))?,
             working_dir: text(working_dir.into())?,
-            shards,
+            shards: options.shards,
             tasks,
             tests: plan.tests,
-            cluster,
+            resources: options.resources(plan),
+            cluster: options.cluster,
         };
         text(dir.clone().into())?;
         let file = dir.join(STORED);
@@ -179,6 +182,7 @@ mod tests {
             shards: 1,
             tasks: vec![1],
             tests: 1,
+            resources: Vec::new(),
             cluster: Cluster::Slurm(Slurm { program: "rtf".to_owned(), options: Vec::new() }),
         };
         let path = dir.path().canonicalize().expect("a path");

@@ -21,6 +21,9 @@ const PER_INDEX_LIMIT: u32 = 3;
 pub const FINAL_CODES: [u8; 6] =
     [exit_code::FAILED, exit_code::BAD_INPUT, exit_code::BROKEN, exit_code::UNDECIDED, 126, 127];
 
+/// The domain of the extended resources.
+const RESOURCE_DOMAIN: &str = "rtf";
+
 /// How long Kubernetes keeps a Job that has ended, in seconds: one day.
 const KEPT_SECS: u32 = 86_400;
 
@@ -68,8 +71,9 @@ fn pod(kubernetes: &Kubernetes, array: &JobArray<'_>) -> Value {
         "command": command(array),
         "terminationMessagePolicy": "FallbackToLogsOnError",
     });
-    if !kubernetes.resources.is_empty() {
-        let limits = kubernetes.resources.iter().map(|name| (name.clone(), json!("1")));
+    if !array.resources.is_empty() {
+        let resources = array.resources.iter();
+        let limits = resources.map(|name| (format!("{RESOURCE_DOMAIN}/{name}"), json!("1")));
         container["resources"] = json!({ "limits": Map::from_iter(limits) });
     }
     let mut pod = json!({
@@ -110,6 +114,7 @@ mod tests {
             tasks: &[1],
             working_dir: Path::new("/w"),
             command: &["run".to_owned(), "--set=a=$(HOME)".to_owned()],
+            resources: &[],
         };
         let expected =
             ["/bin/sh", "/r/$$(HOME)/task.sh", "/r/$$(HOME)", "rtf", "run", "--set=a=$$(HOME)"];

@@ -6,11 +6,12 @@ mod status;
 
 use std::fs::File;
 
+use async_trait::async_trait;
 use serde::{Deserialize, Serialize};
 use tokio::process::Command;
 
 use super::command::{command, execute, run};
-use super::{ClusterError, JOB, JobArray, JobState, OUTPUTS, SCRIPT, create_dir, write};
+use super::{ClusterError, JOB, JobArray, JobState, OUTPUTS, SCRIPT, Scheduler, create_dir, write};
 
 const KUBECTL: &str = "kubectl";
 
@@ -50,17 +51,23 @@ pub struct Kubernetes {
     pub mount: String,
     /// How long a pod may take to end after SIGTERM, in seconds.
     pub grace_secs: u64,
-    /// The extended resources of each pod.
-    pub resources: Vec<String>,
     /// A patch of the manifest, in YAML or JSON.
     pub patch: Option<String>,
     /// Further arguments of `kubectl`.
     pub options: Vec<String>,
 }
 
-impl Kubernetes {
-    /// Submits the tasks, unless `is_resumed` and the Job exists. Returns its name.
-    pub async fn submit(
+#[async_trait]
+impl Scheduler for Kubernetes {
+    fn name(&self) -> &'static str {
+        "kubernetes"
+    }
+
+    fn install_hint(&self) -> &'static str {
+        "install `kubectl`, and let its configuration name the cluster"
+    }
+
+    async fn submit(
         &self,
         array: &JobArray<'_>,
         is_resumed: bool,
@@ -79,8 +86,46 @@ impl Kubernetes {
         Ok(array.name.to_owned())
     }
 
+    async fn manifest(&self, array: &JobArray<'_>) -> Result<Option<String>, ClusterError> {
+        self.prepare(array).await.map(Some)
+    }
+
+    async fn state(&self, job: &str, tasks: &[u32]) -> Result<JobState, ClusterError> {
+        let mut get = self.kubectl("get");
+        get.args(["jobs.batch,pods", "--output=json"]).arg(selector(job));
+        let json = run("kubectl get", get).await?;
+        status::parse(&json, tasks)
+            .map_err(|source| ClusterError::Invalid { command: "kubectl get", source })
+    }
+
+    /// Also ends the pods that run: they get SIGTERM, and the Job vanishes when none is left.
+    async fn cancel_waiting(&self, job: &str) -> Result<(), ClusterError> {
+        let mut delete = self.kubectl("delete");
+        delete.args(["--cascade=foreground", "--wait=false", "--ignore-not-found"]);
+        delete.arg(format!("jobs.batch/{job}"));
+        run("kubectl delete", delete).await.map(drop)
+    }
+
+    async fn terminate(&self, job: &str, _: &[u32], is_repeated: bool) -> Result<(), ClusterError> {
+        match is_repeated {
+            true => self.cancel(job).await,
+            false => self.cancel_waiting(job).await,
+        }
+    }
+
+    /// Lets the pods be killed after one second. A shorter time would not wait until they are.
+    async fn cancel(&self, job: &str) -> Result<(), ClusterError> {
+        self.cancel_waiting(job).await?;
+        let mut delete = self.kubectl("delete");
+        delete.args(["pods", "--grace-period=1", "--wait=false", "--ignore-not-found"]);
+        delete.arg(selector(job));
+        run("kubectl delete", delete).await.map(drop)
+    }
+}
+
+impl Kubernetes {
     /// Writes what the Job needs, and its manifest, which is returned.
-    pub async fn prepare(&self, array: &JobArray<'_>) -> Result<String, ClusterError> {
+    async fn prepare(&self, array: &JobArray<'_>) -> Result<String, ClusterError> {
         write(array.dir.join(SCRIPT), TASK)?;
         let lines: String = array.tasks.iter().map(|task| format!("{task}\n")).collect();
         write(array.dir.join(TASKS), lines)?;
@@ -103,33 +148,6 @@ impl Kubernetes {
         let mut get = self.kubectl("get");
         get.args(["--ignore-not-found", "--output=name", &format!("jobs.batch/{job}")]);
         Ok(!run("kubectl get", get).await?.trim().is_empty())
-    }
-
-    /// The tasks that have not ended.
-    pub async fn state(&self, job: &str, tasks: &[u32]) -> Result<JobState, ClusterError> {
-        let mut get = self.kubectl("get");
-        get.args(["jobs.batch,pods", "--output=json"]).arg(selector(job));
-        let json = run("kubectl get", get).await?;
-        status::parse(&json, tasks)
-            .map_err(|source| ClusterError::Invalid { command: "kubectl get", source })
-    }
-
-    /// Deletes the Job: its pods get SIGTERM, and it vanishes when none is left.
-    pub async fn delete(&self, job: &str) -> Result<(), ClusterError> {
-        let mut delete = self.kubectl("delete");
-        delete.args(["--cascade=foreground", "--wait=false", "--ignore-not-found"]);
-        delete.arg(format!("jobs.batch/{job}"));
-        run("kubectl delete", delete).await.map(drop)
-    }
-
-    /// Deletes the Job, and lets its pods be killed after one second. A shorter time would not wait
-    /// until they are.
-    pub async fn kill(&self, job: &str) -> Result<(), ClusterError> {
-        self.delete(job).await?;
-        let mut delete = self.kubectl("delete");
-        delete.args(["pods", "--grace-period=1", "--wait=false", "--ignore-not-found"]);
-        delete.arg(selector(job));
-        run("kubectl delete", delete).await.map(drop)
     }
 
     fn kubectl(&self, verb: &str) -> Command {

@@ -130,6 +130,7 @@ impl<'a> ClusterPool<'a> {
             tasks,
             working_dir: &self.dir.description.working_dir,
             command,
+            resources: &self.settings.resources,
         }
     }
 
@@ -142,8 +143,9 @@ impl<'a> ClusterPool<'a> {
         let (numbers, command) = self.job_parts(&array);
         let job_array = self.job_array(&array, &numbers, &command);
         // A new one has no job yet, and a name that no job has.
-        let submitted = self.settings.cluster.submit(&job_array, true, self.lock).await;
-        let job = submitted.map_err(cluster_failure)?;
+        let cluster = &self.settings.cluster;
+        let submitted = cluster.submit(&job_array, true, self.lock).await;
+        let job = submitted.map_err(|error| cluster_failure(cluster, error))?;
         let mut stop = Stop::new(&job, &array.dir, self.shutdown_timeout);
         let was_cancelled = array.dir.join(CANCELLED).exists();
         if was_cancelled {

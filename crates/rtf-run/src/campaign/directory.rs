@@ -65,6 +65,9 @@ pub struct Description {
 pub struct CampaignJobs {
     /// The largest number of tasks of a job.
     pub shards: u32,
+    /// The resources that are requested for each task.
+    #[serde(default)]
+    pub resources: Vec<String>,
     /// Where they are submitted, and how.
     pub cluster: Cluster,
 }

@@ -34,7 +34,7 @@ pub struct ClusterArgs {
     /// Where to run: on this machine (`local`), or in a cluster (`slurm`, `kubernetes`)
     #[arg(help_heading = EXECUTOR, long, value_name = "EXECUTOR", default_value = "local")]
     #[arg(hide_possible_values = true)]
-    pub executor: ExecutorOption,
+    pub executor: Executor,
 
     /// Split the tests or episodes into N shards, which the executor runs as tasks
     #[arg(help_heading = EXECUTOR, long, value_name = "N", group = "sharding")]
@@ -87,9 +87,9 @@ pub struct CampaignTaskArgs {
     pub shutdown_timeout: Duration,
 }
 
-/// The executors.
+/// Where tests and episodes run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum ExecutorOption {
+pub enum Executor {
     /// This machine
     #[default]
     Local,
@@ -97,4 +97,15 @@ pub enum ExecutorOption {
     Slurm,
     /// A Kubernetes cluster
     Kubernetes,
+}
+
+/// The name, as on the command line.
+impl std::fmt::Display for Executor {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Local => "local",
+            Self::Slurm => "slurm",
+            Self::Kubernetes => "kubernetes",
+        })
+    }
 }

@@ -28,7 +28,7 @@ pub use campaign::{
 };
 pub use debug::{DebugArgs, RunVerbArgs};
 pub use doctor::{DoctorArgs, DoctorFormat};
-pub use executor::{CampaignTaskArgs, ClusterArgs, ExecutorArgs, ExecutorOption};
+pub use executor::{CampaignTaskArgs, ClusterArgs, Executor, ExecutorArgs};
 pub use formats::{Annotations, StdoutFormat};
 pub use gate::{GateFormat, HistoryGateArgs};
 pub use golden::{GoldenAcceptArgs, GoldenVerb};

@@ -17,7 +17,7 @@ pub fn run(args: RunVerbArgs, matches: &ArgMatches) -> VerbResult {
                 is_dry_run.then_some(|planned| list::print(planned, ListFormat::Text, false));
             pipeline::run(invocation, || source.resolve(), show)
         }
-        RunVerbRequest::Submission(new) => rtf_executor::run(&new.options, new.tests, &new.collect),
+        RunVerbRequest::Submission(new) => rtf_executor::run(new.options, new.tests, &new.collect),
         RunVerbRequest::Resumed(submission, collect) => {
             rtf_executor::supervise(&submission, &collect)
         }

@@ -3,13 +3,13 @@
 use std::borrow::Cow;
 
 use clap::ArgMatches;
-use rtf_executor::{ClusterOptions, CollectRequest, Executor, Submission};
+use rtf_executor::{ClusterOptions, CollectRequest, Submission};
 use rtf_run::error::Failure;
 use rtf_run::request::TestsRequest;
 
 use super::local_run::{self, LocalRun};
 use super::{cluster, config, inputs, output};
-use crate::cli::RunVerbArgs;
+use crate::cli::{Executor, ExecutorArgs, RunVerbArgs};
 
 /// What `rtf run` does.
 pub enum RunVerbRequest {
@@ -37,12 +37,13 @@ pub fn resolve(args: RunVerbArgs, matches: &ArgMatches) -> Result<RunVerbRequest
         None => (None, args, Cow::Borrowed(matches)),
     };
     config::fill_run(&mut args.run, &matches)?;
-    let options = cluster::options(&args.executor.cluster)?;
-    let is_local = options.executor == Executor::Local || args.executor.array_task.is_some();
-    match &args.executor.array_task {
-        Some(task) => cluster::fill_task(task, &mut args.run, &options)?,
-        None if !is_local => cluster::fill_submission(&mut args, &options)?,
-        None => {}
+    let ExecutorArgs { cluster: executor, array_task, .. } = args.executor.clone();
+    cluster::refuse_unused(&executor)?;
+    let is_local = executor.executor == Executor::Local || array_task.is_some();
+    match &array_task {
+        Some(task) => cluster::fill_task(task, &mut args.run, executor.shards)?,
+        None if is_local => {}
+        None => cluster::fill_submission(&mut args)?,
     }
     let debug = local_run::debug(&args.debug, &args.run)?;
     let output = output::output(&args.run, debug.is_some());
@@ -52,17 +53,13 @@ pub fn resolve(args: RunVerbArgs, matches: &ArgMatches) -> Result<RunVerbRequest
         let run = LocalRun::new(args, debug, (output, targets))?;
         return Ok(RunVerbRequest::Local(Box::new(run)));
     }
-    let collect = CollectRequest {
-        output,
-        targets,
-        symlink: args.symlink,
-        shutdown_timeout: args.shutdown_timeout,
-    };
-    Ok(match resumed {
-        Some(submission) => RunVerbRequest::Resumed(Box::new(submission), collect),
-        None => {
-            let tests = inputs::tests(&args.input)?;
-            RunVerbRequest::Submission(Box::new(SubmissionRequest { options, tests, collect }))
-        }
-    })
+    let shutdown_timeout = args.shutdown_timeout;
+    let collect = CollectRequest { output, targets, symlink: args.symlink, shutdown_timeout };
+    if let Some(submission) = resumed {
+        return Ok(RunVerbRequest::Resumed(Box::new(submission), collect));
+    }
+    let results = &collect.output.results;
+    let options = cluster::options(&executor, results, shutdown_timeout)?;
+    let tests = inputs::tests(&args.input)?;
+    Ok(RunVerbRequest::Submission(Box::new(SubmissionRequest { options, tests, collect })))
 }

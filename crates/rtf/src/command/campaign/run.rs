@@ -15,8 +15,6 @@ use rtf_coordinator::coordinator::{CampaignEnd, Coordinator, episodes_of};
 use rtf_coordinator::pool::{ClusterPool, LocalPool};
 use rtf_coordinator::summary::{self, EarlyEnd};
 use rtf_engine::signal::SignalListener;
-use rtf_executor;
-use rtf_executor::Executor;
 use rtf_history::entry;
 use rtf_plan::plan::Plan;
 use rtf_report::escape;
@@ -29,7 +27,7 @@ use rtf_run::error::Failure;
 use rtf_run::history::campaigns;
 use rtf_run::{plan, terminal};
 
-use crate::cli::{CampaignRunArgs, ProfileArgs};
+use crate::cli::{CampaignRunArgs, Executor, ProfileArgs};
 use crate::command::VerbResult;
 use crate::request::{self, config};
 
@@ -210,15 +208,15 @@ fn describe(
 
 /// The jobs, if the episodes are to run in a cluster.
 fn jobs(args: &CampaignRunArgs, plan: &Plan) -> Result<Option<CampaignJobs>, Failure> {
-    let options = request::cluster::options(&args.cluster)?;
-    if options.executor == Executor::Local {
+    request::cluster::refuse_unused(&args.cluster)?;
+    if args.cluster.executor == Executor::Local {
         return Ok(None);
     }
-    refuse_workers(args, &options.executor.to_string())?;
-    let shards = rtf_executor::shards(&options)?;
-    let cluster =
-        rtf_executor::cluster(&options, plan, &args.results.results, args.shutdown_timeout)?;
-    Ok(cluster.map(|cluster| CampaignJobs { shards, cluster }))
+    refuse_workers(args, &args.cluster.executor.to_string())?;
+    let results = &args.results.results;
+    let options = request::cluster::options(&args.cluster, results, args.shutdown_timeout)?;
+    let resources = options.resources(plan);
+    Ok(Some(CampaignJobs { shards: options.shards, resources, cluster: options.cluster }))
 }
 
 fn refuse_workers(args: &CampaignRunArgs, executor: &str) -> Result<(), Failure> {
