@@ -24,6 +24,7 @@ collect_ignore = [
     "colcon/workspace",
     "ctest/project",
     "frameworks/descendants",
+    "frameworks/launch_testing",
     "frameworks/pytest",
     "frameworks/pytest_projects",
     "frameworks/rostest",

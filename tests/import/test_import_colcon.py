@@ -8,7 +8,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from checkout import call, need_packages, venv
+from checkout import ROOT, call, need_packages, venv
 from observed import observe
 from run import Run
 
@@ -16,6 +16,7 @@ pytestmark = [pytest.mark.first, pytest.mark.venv("colcon")]
 EXPECTED = {
     "arm_driver.test_arm": {"Arm.Moves": "passed", "Arm.Fails": "failed"},
     "arm_driver.test_py": {"test_py": "passed"},
+    "arm_driver.test_driver_launch_test.py": {"TestDriver.test_is_on": "passed"},
     "arm_driver.ctest": {"custom": "passed"},
     "arm_tools": {"test_tools": "passed"},
     "plain_lib.lib_test": {"Lib.A": "passed", "Lib.B": "failed"},
@@ -49,6 +50,9 @@ def test_the_suite_of_a_workspace_runs_its_tests(
     for assignment in filter(None, variables.stdout.split("\0")):
         name, value = assignment.split("=", maxsplit=1)
         monkeypatch.setenv(name, value)
+    # launch is in no registry.
+    packages = str(ROOT / "tests/frameworks/launch_testing/packages")
+    monkeypatch.setenv("PYTHONPATH", packages, prepend=":")
     run = Run(rtf, str(suite), tmp_path / "results")
     run.wait()
     got = {

@@ -141,7 +141,11 @@ fn is_portable(test: &ListedTest, build: &Path) -> bool {
 /// no command if the wrapper does more than that.
 fn real_command(test: &ListedTest) -> (&[String], Vec<(String, String)>) {
     let command = test.command.as_slice();
-    let is_wrapper = |word: &String| word.ends_with("ament_cmake_test/cmake/run_test.py");
+    // `run_test_isolated.py` also chooses a domain of ROS 2, as rtf does.
+    let is_wrapper = |word: &String| {
+        word.ends_with("ament_cmake_test/cmake/run_test.py")
+            || word.ends_with("ament_cmake_ros/cmake/run_test_isolated.py")
+    };
     if !command.iter().take(3).any(is_wrapper) {
         return (command, Vec::new());
     }
@@ -166,17 +170,33 @@ fn recognize(test: &ListedTest) -> Option<Recognized> {
         let (name, value) = assignment.split_once('=')?;
         env.push((name.to_owned(), value.to_owned()));
     }
-    pytest(program, args, &env).or_else(|| native(program, args, env))
+    let name = Path::new(program).file_name()?.to_string_lossy();
+    let module = args.iter().position(|arg| arg == "-m").filter(|_| name.starts_with("python"));
+    let (module, args) = match module {
+        Some(at) => (&**args.get(at + 1)?, &args[at + 2..]),
+        None => (&*name, args),
+    };
+    match module {
+        "launch_testing.launch_test" | "launch_test" => launch_testing(args, env),
+        _ if module.starts_with("pytest") || module == "py.test" => pytest(args, env),
+        _ => native(program, args, env),
+    }
+}
+
+/// `python -m launch_testing.launch_test FILE NAME:=VALUE`, `launch_test …`.
+fn launch_testing(args: &[String], env: Vec<(String, String)>) -> Option<Recognized> {
+    let of_report =
+        |arg: &str| arg.starts_with("--junit-xml=") || arg.starts_with("--package-name=");
+    let mut kept = args.iter().filter(|arg| !arg.is_empty() && !of_report(arg)).cloned();
+    let subject = kept.next().filter(|file| Path::new(file).is_absolute())?;
+    let args: Vec<_> = kept.collect();
+    let are_arguments = args.iter().all(|arg| arg.contains(":="));
+    let kind = "launch_testing";
+    are_arguments.then_some(Recognized { kind, subject, args, case: None, env })
 }
 
 /// `python -m pytest PATH`, `pytest PATH`.
-fn pytest(program: &str, args: &[String], env: &[(String, String)]) -> Option<Recognized> {
-    let name = Path::new(program).file_name()?.to_string_lossy();
-    let args = match args.iter().position(|arg| arg == "-m") {
-        Some(at) if name.starts_with("python") && args.get(at + 1)? == "pytest" => &args[at + 2..],
-        _ if name.starts_with("pytest") || name == "py.test" => args,
-        _ => return None,
-    };
+fn pytest(args: &[String], env: Vec<(String, String)>) -> Option<Recognized> {
     let mut kept = Vec::new();
     let mut paths = Vec::new();
     let mut args = args.iter();
@@ -193,7 +213,7 @@ fn pytest(program: &str, args: &[String], env: &[(String, String)]) -> Option<Re
         }
     }
     let [subject] = paths.as_slice() else { return None };
-    let (subject, env) = (subject.clone(), env.to_vec());
+    let subject = subject.clone();
     Some(Recognized { kind: "pytest", subject, args: kept, case: None, env })
 }
 
@@ -328,6 +348,26 @@ mod tests {
         assert_eq!(found[0].timeout.as_deref(), Some("600"));
         let skipped = command(&["--skip-test"], &[&arm]);
         assert_eq!(shown(&tests(&[skipped], dir.path(), None)), ["ctest ctest [] [] test_arm"]);
+    }
+
+    #[test]
+    fn launch_tests_without_the_options_for_reports() {
+        let isolated = "/opt/ros/share/ament_cmake_ros/cmake/run_test_isolated.py";
+        let command = format!(
+            "/usr/bin/python3 -u {isolated} r.xml --package-name arm --command \
+             /usr/bin/python3 -m launch_testing.launch_test /p/arm_launch_test.py side:=left \
+             --junit-xml=r.xml --package-name=arm"
+        );
+        let words: Vec<&str> = command.split_whitespace().collect();
+        let listed = [ListedTest::new("test_arm", &words, &[("TIMEOUT", "60")])];
+        let found = tests(&listed, Path::new("/b"), None);
+        assert_eq!(shown(&found), [r#"launch_testing test_arm ["side:=left"] [] test_arm"#]);
+        assert_eq!(found[0].subject, "/p/arm_launch_test.py");
+        let with_option = ListedTest::new("shown", &["launch_test", "/a.py", "--show-args"], &[]);
+        assert_eq!(
+            shown(&tests(&[with_option], Path::new("/b"), None)),
+            ["ctest ctest [] [] shown"]
+        );
     }
 
     #[test]

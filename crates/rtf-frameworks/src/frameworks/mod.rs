@@ -42,11 +42,12 @@ const TYPES: &[FrameworkType] = &[
     ("go", || Box::new(go::Go)),
     ("gtest", || Box::new(gtest::GoogleTest)),
     ("junit", || Box::new(junit::JUnit)),
+    ("launch_testing", || Box::new(unittest::LAUNCH_TESTING)),
     ("program", || Box::new(program::Program)),
     ("pytest", || Box::new(pytest::Pytest)),
     ("rostest", || Box::new(rostest::Rostest)),
     ("tap", || Box::new(tap::Tap)),
-    ("unittest", || Box::new(unittest::Unittest)),
+    ("unittest", || Box::new(unittest::UNITTEST)),
 ];
 
 /// The framework of this type.

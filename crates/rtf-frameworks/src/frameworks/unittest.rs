@@ -1,5 +1,5 @@
-//! Python's unittest. The runner `rtf.frameworks.unittest_runner` of the Python SDK discovers,
-//! lists and runs the tests.
+//! Python's unittest, and launch_testing, whose tests are unittest's. Runners of the Python SDK find,
+//! list and run the tests.
 
 use std::process::Command;
 
@@ -10,14 +10,18 @@ use crate::framework::{
 
 use super::python;
 
-const RUNNER: &str = "rtf.frameworks.unittest_runner";
-
 #[derive(Clone, Copy, Debug)]
-pub struct Unittest;
+pub struct Unittest {
+    /// The module of the runner.
+    runner: &'static str,
+}
+
+pub const UNITTEST: Unittest = Unittest { runner: "rtf.frameworks.unittest_runner" };
+pub const LAUNCH_TESTING: Unittest = Unittest { runner: "rtf.frameworks.launch_testing_runner" };
 
 impl Framework for Unittest {
     fn list(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
-        python::list(test, command(test), |_| None).map(Some)
+        python::list(test, self.program(test), |_| None).map(Some)
     }
 
     fn list_for_run(&self, _test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
@@ -29,7 +33,7 @@ impl Framework for Unittest {
     }
 
     fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
-        Ok(command(launch.test))
+        Ok(self.program(launch.test))
     }
 
     fn reader(&self, _launch: &Launch<'_>) -> Box<dyn ReportReader> {
@@ -45,8 +49,10 @@ impl Framework for Unittest {
     }
 }
 
-fn command(test: &TestProgram) -> Command {
-    let mut command = python::interpreter(RUNNER);
-    command.arg(&test.file).args(&test.args);
-    command
+impl Unittest {
+    fn program(&self, test: &TestProgram) -> Command {
+        let mut command = python::interpreter(self.runner);
+        command.arg(&test.file).args(&test.args);
+        command
+    }
 }

@@ -30,7 +30,7 @@ const PYTHON_TESTS: Framework =
 const BUILT_DIRECTORY: Framework =
     Framework { subject: TestSubject::Directory, check_limit: COMPILE_LIMIT, ..LISTED_PROGRAM };
 
-pub(super) static FRAMEWORKS: [HostKind; 15] = [
+pub(super) static FRAMEWORKS: [HostKind; 16] = [
     kind(&["gtest"], FORKED_PROGRAM),
     kind(&["catch2"], FORKED_PROGRAM),
     kind(&["doctest"], FORKED_PROGRAM),
@@ -43,6 +43,10 @@ pub(super) static FRAMEWORKS: [HostKind; 15] = [
     },
     with_python_sdk(kind(&["pytest"], PYTHON_TESTS)),
     with_python_sdk(kind(&["unittest"], PYTHON_TESTS)),
+    with_python_sdk(kind(
+        &["launch_testing"],
+        Framework { subject: TestSubject::File, ..PYTHON_TESTS },
+    )),
     kind(&["ctest"], Framework { check_limit: LIST_LIMIT, ..BUILT_DIRECTORY }),
     HostKind {
         extensions: &["test"],

@@ -6,6 +6,7 @@ import re
 import sys
 import traceback
 import unittest
+from _thread import get_ident
 from time import perf_counter_ns
 
 from rtf.frameworks.comparison import compared
@@ -46,6 +47,7 @@ class Reporter(unittest.TestResult):
         self._stop = Stop(Stopped)
         # Between tests, an exception would end the run without `tearDownClass`.
         self._stop.raises = False
+        self._main_thread = get_ident()
         # Planned tests that have not started: their start, by name.
         self._pending: dict[str, list[Any]] = {}
         # The result of the running test, unless its messages decide it.
@@ -55,13 +57,27 @@ class Reporter(unittest.TestResult):
     def plan(self, tests: list[Any]) -> dict[str, bool]:
         """Announce tests. Returns for each name whether it runs."""
         runs: dict[str, bool] = {}
-        for portion in portions([test.id() for test in tests]):
+        for portion in portions([self.name(test) for test in tests]):
             answer = self._connection.ask("cases-planned", {"names": portion})
             runs.update(zip(portion, (byte == ord("0") for byte in answer)))
         for test in tests:
-            if runs[test.id()]:
-                self._pending.setdefault(test.id(), []).append(_Pending(test))
+            name = self.name(test)
+            if runs[name]:
+                self._pending.setdefault(name, []).append(_Pending(test, self.start(test)))
         return runs
+
+    def name(self, test: Any) -> str:
+        """Return the name of a test's case."""
+        return str(test.id())
+
+    def start(self, test: Any) -> dict[str, object]:
+        """Return what is known about a test before it runs."""
+        return start(test)
+
+    def file(self, test: Any) -> str:
+        """Return the file of a test, or nothing."""
+        module = sys.modules.get(type(test).__module__)
+        return getattr(module, "__file__", None) or ""
 
     def report_import_problem(self, text: str) -> None:
         """Report a module that cannot be imported."""
@@ -79,9 +95,9 @@ class Reporter(unittest.TestResult):
     def startTest(self, test: Any) -> None:  # noqa: N802 - unittest's name
         """Start a case."""
         super().startTest(test)
-        self._start(test.id(), start(test))
+        self._start(self.name(test), self.start(test))
         self._started = perf_counter_ns()
-        self._stop.raises = True
+        self._stop.raises = get_ident() == self._main_thread
 
     def stopTest(self, test: Any) -> None:  # noqa: N802
         """Finish a case. After a stop request, the runner finishes it."""
@@ -92,7 +108,7 @@ class Reporter(unittest.TestResult):
             self.stop()
         else:
             duration = (perf_counter_ns() - self._started) // 1000
-            params = {"name": test.id(), "duration_us": duration, **self._result}
+            params = {"name": self.name(test), "duration_us": duration, **self._result}
             self._connection.post("case-finished", params)
 
     def addError(self, test: Any, err: Any) -> None:  # noqa: N802
@@ -124,14 +140,14 @@ class Reporter(unittest.TestResult):
         """Report a failure that is expected."""
         super().addExpectedFailure(test, err)
         short = _short(err)
-        self._message("report", self._long(err, test), test.id())
+        self._message("report", self._long(err, test), self.name(test))
         self._result = {"outcome": "skipped", "reason": f"expected failure: {short}"}
 
     def addUnexpectedSuccess(self, test: Any) -> None:  # noqa: N802
         """Report a test that should have failed."""
         super().addUnexpectedSuccess(test)
-        location = start(test).get("location")
-        self._message("failure", "unexpected success", test.id(), location=location)
+        location = self.start(test).get("location")
+        self._message("failure", "unexpected success", self.name(test), location=location)
 
     def addSubTest(self, test: Any, subtest: Any, err: Any) -> None:  # noqa: N802
         """Report a subtest, which has ended."""
@@ -153,7 +169,7 @@ class Reporter(unittest.TestResult):
         self._connection.post("case-started", params)
 
     def _start_subtest(self, subtest: Any) -> str:
-        parent = subtest.test_case.id()
+        parent = self.name(subtest.test_case)
         name = subtest._subDescription()
         values = [{"name": str(key), "value": str(it)} for key, it in subtest.params.items()]
         params = {"name": name, "parent": parent, "parameters": values}
@@ -167,7 +183,7 @@ class Reporter(unittest.TestResult):
             return
         group = _GROUP.fullmatch(test.id())
         if group is None:
-            self._exception(kind, test, err, test.id())
+            self._exception(kind, test, err, self.name(test))
             return
         text = f"{test.id()}: {_short(err)}"
         names: list[str | None] = [*self._take_group(*group.groups())]
@@ -192,9 +208,7 @@ class Reporter(unittest.TestResult):
 
     def _exception(self, kind: str, test: Any, err: Any, path: str) -> None:
         details: dict[str, object] = {}
-        module = sys.modules.get(type(test).__module__)
-        file = getattr(module, "__file__", None) or ""
-        details["location"] = _innermost(err[2], file)
+        details["location"] = _innermost(err[2], self.file(test))
         details["comparison"] = _comparison(err[2])
         self._message(kind, _short(err), path, **details)
         self._message("report", self._long(err, test), path)
@@ -211,9 +225,9 @@ class Reporter(unittest.TestResult):
 class _Pending:
     """A planned test that has not started."""
 
-    def __init__(self, test: Any) -> None:
+    def __init__(self, test: Any, start: dict[str, object]) -> None:
         """Keep what is needed if its class or module cannot be set up."""
-        self.start = start(test)
+        self.start = start
         self.class_name = class_name(test)
         self.module = type(test).__module__
 

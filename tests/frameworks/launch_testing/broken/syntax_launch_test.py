@@ -1,0 +1,4 @@
+"""Is no Python."""
+
+def generate_test_description(:  # line: syntax
+    pass
