@@ -22,7 +22,7 @@ class TestDriver(unittest.TestCase):
         """Passes."""
 
     def test_2_while_it_dies(self):
-        """Does not come to its end."""
+        """Never finishes."""
         time.sleep(100)
 
     def test_3_after(self):

@@ -6,7 +6,7 @@ import functools
 import signal
 
 from launch import launch_service
-import launch_testing.test_runner as test_runner
+from launch_testing import test_runner
 from launch_testing.loader import LoadTestsFromPythonModule
 
 from rtf.frameworks.launch_testing_reporter import Reporter, case_start

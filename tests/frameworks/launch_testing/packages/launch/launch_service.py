@@ -82,7 +82,7 @@ class LaunchService:
         assert task is not None
         with AsyncSafeSignalManager(self._loop) as manager:
             manager.handle(signal.SIGINT, lambda _: self._shut_down())
-            # Its processes go on running.
+            # Its processes continue to run.
             manager.handle(signal.SIGTERM, lambda _: task.cancel() and None)
             try:
                 self.context.execute(self._description)

@@ -18,6 +18,7 @@ class TestRun:
         self.name, self.param_args = name, arguments
         self._test_description_function = describe
         self.timeout = getattr(describe, "__ready_to_test_action_timeout__", 15)
+        self.markers = getattr(describe, "__markers__", {})
         self.pre_shutdown_tests = _Loader(is_late=False).loadTestsFromModule(module)
         self.post_shutdown_tests = _Loader(is_late=True).loadTestsFromModule(module)
         for suite in (self.pre_shutdown_tests, self.post_shutdown_tests):
@@ -72,7 +73,7 @@ class _Loader(unittest.TestLoader):
     def loadTestsFromTestCase(self, tests: type[Any]) -> unittest.TestSuite:
         if getattr(tests, "__post_shutdown_test__", False) != self._is_late:
             return self.suiteClass()
-        # Each launch has a class of its own.
+        # Each launch has separate classes.
         copied = type(tests.__name__, (tests,), {"__module__": tests.__module__})
         return super().loadTestsFromTestCase(copied)
 

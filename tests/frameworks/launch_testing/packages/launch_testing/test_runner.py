@@ -133,7 +133,7 @@ class LaunchTestRunner:
             service.shutdown()
 
         threading.Thread(target=run_tests, daemon=True).start()
-        service.run()
+        service.run(shutdown_when_idle=not run.markers.get("keep_alive", False))
         if not finished.is_set():
             raise _LaunchDied
         late = _tested(run.post_shutdown_tests)
