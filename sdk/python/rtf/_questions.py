@@ -42,15 +42,13 @@ def ask(
         params["default"] = default
     if picture is not None:
         params["picture"] = _attach(session, picture)
-    place = _location.caller()
-    if place is not None:
-        params["location"] = place.as_json()
+    _location.add_caller(params)
     request = session.request
     request.open_question(number)
     session.notify_in_case("question-asked", params)
     end = request.wait_for_answer(number)
     if end is None:
-        raise Interrupted(request.stop_reason())
+        raise Interrupted(request.stop_reason)
     answer, problem = end
     if answer is None:
         _fail(session, problem)

@@ -131,7 +131,8 @@ def _step(session: Session, function: Callable[[], object], step: str) -> None:
 
 
 def _tear_down(session: Session, plugin: TestCase | FixtureManager) -> None:
-    session.request.clear_stop()
+    # It can wait until the runner asks again.
+    session.request.stop.clear()
     _guard(session, plugin.tearDown)
 
 
@@ -152,7 +153,7 @@ def _guard(session: Session, function: Callable[[], object]) -> None:
         session.error(str(problem))
     except BaseException as problem:  # noqa: BLE001 - also KeyboardInterrupt and the plug-in's own
         # A library that replaced the signal handler raises KeyboardInterrupt.
-        if not (isinstance(problem, KeyboardInterrupt) and session.request.stop_requested()):
+        if not (isinstance(problem, KeyboardInterrupt) and session.request.stop.is_set()):
             _exceptions.report(session, problem)
     if os.getpid() != process:
         # A forked child returned from the plug-in; its parent serves the runner.
@@ -182,5 +183,5 @@ def stop_by_signal(number: int, frame: FrameType | None) -> None:
     session = _session.running()
     if session is None or not session.request.take_announced_signal():
         signal.default_int_handler(number, frame)
-    elif _interruptible and session.request.stop_requested():
-        raise Interrupted(session.request.stop_reason())
+    elif _interruptible and session.request.stop.is_set():
+        raise Interrupted(session.request.stop_reason)
