@@ -9,7 +9,6 @@ import unittest
 from time import perf_counter_ns
 
 from rtf.frameworks.comparison import compared
-from rtf.frameworks.connection import portions
 from rtf.frameworks.stop import Stop
 from rtf.frameworks.unittest_tests import class_name, import_problem, start
 
@@ -54,10 +53,7 @@ class Reporter(unittest.TestResult):
 
     def plan(self, tests: list[Any]) -> dict[str, bool]:
         """Announce tests. Returns for each name whether it runs."""
-        runs: dict[str, bool] = {}
-        for portion in portions([test.id() for test in tests]):
-            answer = self._connection.ask("cases-planned", {"names": portion})
-            runs.update(zip(portion, (byte == ord("0") for byte in answer)))
+        runs = self._connection.plan([test.id() for test in tests])
         for test in tests:
             if runs[test.id()]:
                 self._pending.setdefault(test.id(), []).append(_Pending(test))
