@@ -16,9 +16,11 @@ from rtf.host import load
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from types import FrameType
-    from typing import Callable
+    from typing import Callable, TypeVar
 
     from rtf._session import Session
+
+    _Result = TypeVar("_Result")
 
 Answer = dict[str, object]
 
@@ -114,15 +116,13 @@ def tear_down_fixture(session: Session, fixture: FixtureManager | None) -> Answe
 
 
 def _load(session: Session, base: type[load._P]) -> load._P | None:
-    loaded: list[load._P] = []
-    _guard(session, lambda: loaded.append(load.load(session.task.file, base)))
+    loaded = _guard(session, lambda: load.load(session.task.file, base))
     return loaded[0] if loaded else None
 
 
 def _step(session: Session, function: Callable[[], object], step: str) -> None:
     """Carry out a step and check its result."""
-    results: list[object] = []
-    _guard(session, lambda: results.append(function()))
+    results = _guard(session, function)
     if results and step != "run" and _is_false(results[0]):
         session.request.record("error" if step == "setup" else "failed", f"{step} returned false")
     if results and (hasattr(results[0], "__await__") or hasattr(results[0], "__next__")):
@@ -136,13 +136,17 @@ def _tear_down(session: Session, plugin: TestCase | FixtureManager) -> None:
     _guard(session, plugin.tearDown)
 
 
-def _guard(session: Session, function: Callable[[], object]) -> None:
-    """Call the plug-in and report its exception. Only `SystemExit` propagates."""
+def _guard(session: Session, function: Callable[[], _Result]) -> list[_Result]:
+    """Call the plug-in; return its result, or nothing after an exception, which is reported.
+
+    Only `SystemExit` propagates.
+    """
     process = os.getpid()
+    results: list[_Result] = []
     try:
         try:
             _interruptible.append(session)
-            function()
+            results.append(function())
         finally:
             _interruptible.clear()
     except StepEnded:
@@ -160,6 +164,7 @@ def _guard(session: Session, function: Callable[[], object]) -> None:
         _flush_output()
         session.sampling.send()
         os._exit(0)
+    return results
 
 
 def _is_false(result: object) -> bool:
