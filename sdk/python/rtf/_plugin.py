@@ -60,8 +60,7 @@ class Plugin:
 
     def error(self, text: object) -> NoReturn:
         """Report an error (the bench is wrong: no network, no calibration) and end this step."""
-        _session.current().error(str(text))
-        raise AssertionEnded(str(text))
+        _session.current().end_with_error(str(text))
 
     def require(self, condition: object, text: object) -> None:
         """Assert that `condition` holds; if it does not, this step ends."""

@@ -18,7 +18,7 @@ from rtf._stop import AssertionEnded
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Protocol, TypeVar
+    from typing import NoReturn, Protocol, TypeVar
 
     from rtf._sampling import Notify, Signal
     from rtf._task import Task
@@ -188,6 +188,11 @@ class Session:
         self.request.record("error")
         self.message("error", text, **more)
 
+    def end_with_error(self, text: str) -> NoReturn:
+        """Send an error, which ends the step."""
+        self.error(text)
+        raise AssertionEnded(text)
+
     def skip(self, reason: str) -> None:
         """Skip the innermost case of this thread, or without one the test."""
         case = self.cases.innermost()
@@ -205,9 +210,7 @@ class Session:
     def value_of(self, values: dict[str, _Value], name: str, problem: str) -> _Value:
         """Return a named value. For an unknown name, report `problem` and the known names."""
         if name not in values:
-            text = f"{problem} {', '.join(values) or 'none'}"
-            self.error(text)
-            raise AssertionEnded(text)
+            self.end_with_error(f"{problem} {', '.join(values) or 'none'}")
         return values[name]
 
     def provide(self, name: str, value: object) -> None:
@@ -218,8 +221,7 @@ class Session:
     def require_setup_or_run(self, text: str) -> None:
         """Report an error in any other step."""
         if self.phase not in {"setup", "run"}:
-            self.error(text)
-            raise AssertionEnded(text)
+            self.end_with_error(text)
 
     def _is_within(self, value: float, low: float | None, high: float | None) -> bool:
         is_good = is_within(value, low, high)
