@@ -59,8 +59,7 @@ def assertFail(text: object) -> NoReturn:  # noqa: N802
 
 def assertError(text: object) -> NoReturn:  # noqa: N802
     """Report an error (the bench is wrong) and end this step."""
-    _session.current().error(str(text))
-    raise AssertionEnded(str(text))
+    _session.current().end_with_error(str(text))
 
 
 def getEnvironment() -> str:  # noqa: N802

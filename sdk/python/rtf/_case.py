@@ -41,7 +41,7 @@ class Case:
         if session.phase != "run":
             session.error("cases are allowed in `run` only")
             return False
-        is_stopped = session.request.stop_requested()
+        is_stopped = session.request.stop.is_set()
         return not is_stopped and session.task.selects(session.cases.path_of(self._name))
 
     def __exit__(
@@ -57,7 +57,7 @@ class Case:
         case, session = self._open, self._session
         if case is None:
             return False
-        is_stopped = isinstance(problem, Interrupted) or session.request.stop_requested()
+        is_stopped = isinstance(problem, Interrupted) or session.request.stop.is_set()
         if is_stopped or session.cases.ends_process(problem):
             session.cases.abandon(case, is_stopped=is_stopped)
             return False

@@ -92,7 +92,6 @@ class Cases:
         if self.is_forked():
             case = OpenCase(self, outer, path, self.current())
         else:
-            place = _location.caller()
             # The runner expects the numbers in order.
             with self._lock:
                 self._count += 1
@@ -103,8 +102,7 @@ class Cases:
                 if parameters:
                     values = [{"name": key, "value": _text(v)} for key, v in parameters.items()]
                     fields["parameters"] = values
-                if place is not None:
-                    fields["location"] = place.as_json()
+                _location.add_caller(fields)
                 self._notify("case-started", fields)
         self._set_innermost(case)
         return case

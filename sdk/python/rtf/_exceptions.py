@@ -25,7 +25,7 @@ def report(session: Session, problem: BaseException) -> None:
     reason = "".join(traceback.format_exception_only(type(problem), problem)).strip()
     if isinstance(problem, SyntaxError):
         reason = f"{type(problem).__name__}: {problem.msg}"
-        place = _location.Location(problem.filename or session.task.file, problem.lineno or 0)
+        place = _location.at(problem.filename or session.task.file, problem.lineno or 0)
     trace = _location.without_host(problem.__traceback__)
     lines = traceback.format_exception(type(problem), problem, trace)
     text = f"{reason}\n{''.join(lines).rstrip()}" if trace else reason

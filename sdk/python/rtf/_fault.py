@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from rtf import _session
-from rtf._stop import AssertionEnded
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
@@ -60,5 +59,4 @@ def _request(verb: str, name: str, failed: str) -> None:
         except OSError as error:
             problem = f"the fixture `faults` does not answer: {error}"
     if problem:
-        session.error(f"{failed}: {problem}")
-        raise AssertionEnded(problem)
+        session.end_with_error(f"{failed}: {problem}")

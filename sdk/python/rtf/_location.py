@@ -7,48 +7,43 @@ import sys
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from types import TracebackType
+    from types import FrameType, TracebackType
 
 
 # In addition to all modules whose names begin with `rtf.`.
 _OURS = frozenset({"rtf", "robottestingframework"})
 
 
-class Location:
-    """A line of a source file."""
-
-    __slots__ = ("file", "line")
-
-    def __init__(self, file: str, line: int) -> None:
-        """Lines count from 1."""
-        self.file = file
-        self.line = line
-
-    def as_json(self) -> dict[str, object]:
-        """Return it as the protocol's `location`."""
-        return {"file": self.file, "line": self.line}
+def at(file: str, line: int) -> dict[str, object]:
+    """Return a line of a source file as the protocol's `location`; lines count from 1."""
+    return {"file": file, "line": line}
 
 
-def caller() -> Location | None:
+def caller() -> dict[str, object] | None:
     """Return the innermost line outside this package: the plug-in's line."""
-    frame = sys._getframe(1)
+    frame: FrameType | None = sys._getframe(1)
     while frame is not None:
         if not _is_ours(frame.f_globals):
-            return Location(frame.f_code.co_filename, frame.f_lineno)
-        if frame.f_back is None:
-            return None
+            return at(frame.f_code.co_filename, frame.f_lineno)
         frame = frame.f_back
     return None
 
 
-def of_exception(trace: TracebackType | None, file: str) -> Location | None:
+def add_caller(params: dict[str, object]) -> None:
+    """Add the plug-in's line to the parameters of a notification, if it is known."""
+    place = caller()
+    if place is not None:
+        params["location"] = place
+
+
+def of_exception(trace: TracebackType | None, file: str) -> dict[str, object] | None:
     """Return the innermost line of `file` in a traceback, otherwise the innermost line."""
     in_file = None
     last = None
     while trace is not None:
         if not _is_ours(trace.tb_frame.f_globals):
-            last = Location(trace.tb_frame.f_code.co_filename, trace.tb_lineno)
-            if last.file == file:
+            last = at(trace.tb_frame.f_code.co_filename, trace.tb_lineno)
+            if last["file"] == file:
                 in_file = last
         trace = trace.tb_next
     return in_file or last

@@ -60,8 +60,7 @@ class Plugin:
 
     def error(self, text: object) -> NoReturn:
         """Report an error (the bench is wrong: no network, no calibration) and end this step."""
-        _session.current().error(str(text))
-        raise AssertionEnded(str(text))
+        _session.current().end_with_error(str(text))
 
     def require(self, condition: object, text: object) -> None:
         """Assert that `condition` holds; if it does not, this step ends."""
@@ -88,8 +87,8 @@ class Plugin:
         """Sleep by the wall clock."""
         session = _session.current()
         session.sampling.send_before(seconds)
-        if session.request.wait_for_stop(seconds):
-            raise Interrupted(session.request.stop_reason())
+        if session.request.stop.wait(seconds):
+            raise Interrupted(session.request.stop_reason)
 
     def wait_until(self, condition: Callable[[], object], timeout: float, what: object) -> bool:
         """Wait until `condition()` is true, polling every 10 ms for `timeout` seconds.
@@ -113,7 +112,7 @@ class Plugin:
 
     def interrupted(self) -> bool:
         """Whether the runner has asked to stop; long loops should poll this."""
-        return _session.current().request.stop_requested()
+        return _session.current().request.stop.is_set()
 
     def measure(
         self,

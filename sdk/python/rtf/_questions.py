@@ -6,13 +6,12 @@ import itertools
 import os
 
 from rtf import _attachment, _location, _session
-from rtf._stop import AssertionEnded, Interrupted
+from rtf._stop import Interrupted
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from typing import NoReturn
 
 ANSWER_SECONDS = 300.0
 
@@ -30,7 +29,7 @@ def ask(
     session = _session.current()
     session.require_setup_or_run("questions are allowed in `setup` and `run` of a test only")
     if session.cases.is_forked():
-        _fail(session, "a process that the plug-in forked cannot ask")
+        session.end_with_error("a process that the plug-in forked cannot ask")
     number = next(_numbers)
     params: dict[str, object] = {
         "question": number,
@@ -42,24 +41,17 @@ def ask(
         params["default"] = default
     if picture is not None:
         params["picture"] = _attach(session, picture)
-    place = _location.caller()
-    if place is not None:
-        params["location"] = place.as_json()
+    _location.add_caller(params)
     request = session.request
     request.open_question(number)
     session.notify_in_case("question-asked", params)
     end = request.wait_for_answer(number)
     if end is None:
-        raise Interrupted(request.stop_reason())
+        raise Interrupted(request.stop_reason)
     answer, problem = end
     if answer is None:
-        _fail(session, problem)
+        session.end_with_error(problem)
     return answer
-
-
-def _fail(session: _session.Session, problem: str) -> NoReturn:
-    session.error(problem)
-    raise AssertionEnded(problem)
 
 
 def _attach(session: _session.Session, picture: str) -> str:
@@ -73,5 +65,5 @@ def _attach(session: _session.Session, picture: str) -> str:
     elif start.startswith(_JPEG):
         media_type = "image/jpeg"
     else:
-        _fail(session, f"the picture `{picture}` is neither PNG nor JPEG")
+        session.end_with_error(f"the picture `{picture}` is neither PNG nor JPEG")
     return _attachment.attach(session, full, os.path.basename(full), media_type)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 
@@ -23,6 +24,12 @@ BATCH_SAMPLES = 256
 BATCH_AGE_SECONDS = 0.1
 
 
+def is_within(value: float, low: float | None, high: float | None) -> bool:
+    """Whether a value is finite, and within its limits."""
+    is_good = (low is None or value >= low) and (high is None or value <= high)
+    return is_good and math.isfinite(value)
+
+
 class Batch:
     """Samples of one signal with the same limits and in the same case."""
 
@@ -38,8 +45,7 @@ class Batch:
     def as_json(self) -> dict[str, object]:
         """Return the parameters of `sampled`."""
         name, unit, low, high = self.signal
-        place = self.place.as_json() if self.place is not None else None
-        fields = {"low": low, "high": high, "location": place, "case": self.case}
+        fields = {"low": low, "high": high, "location": self.place, "case": self.case}
         given = {key: value for key, value in fields.items() if value is not None}
         return {"name": name, "unit": unit, **given, "points": self.points}
 

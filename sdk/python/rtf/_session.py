@@ -6,20 +6,19 @@ from any thread. Without a host there is no session, and they raise an error.
 
 from __future__ import annotations
 
-import math
 import os
 import threading
 from queue import SimpleQueue
 
 from rtf import _location
 from rtf._cases import Cases
-from rtf._sampling import Sampling
+from rtf._sampling import Sampling, is_within
 from rtf._stop import AssertionEnded
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Protocol, TypeVar
+    from typing import NoReturn, Protocol, TypeVar
 
     from rtf._sampling import Notify, Signal
     from rtf._task import Task
@@ -47,8 +46,9 @@ class RequestState:
         # The outcome of the first problem, and its reason if no message reports it.
         self._first: tuple[str, str | None] | None = None
         self._skip_reason: str | None = None
-        self._stop = threading.Event()
-        self._stop_reason = ""
+        # Whether, and why, the plug-in is asked to stop.
+        self.stop = threading.Event()
+        self.stop_reason = ""
         self._is_signal_announced = False
         # The ends of questions that threads of the plug-in wait for; `None` is a stop request.
         self._questions: dict[int, SimpleQueue[QuestionEnd | None]] = {}
@@ -76,22 +76,10 @@ class RequestState:
     def request_stop(self, reason: str) -> None:
         """Ask the plug-in to stop; this is a problem."""
         self.record("interrupted", reason)
-        self._stop_reason = reason
-        self._stop.set()
+        self.stop_reason = reason
+        self.stop.set()
         for end in list(self._questions.values()):
             end.put(None)
-
-    def clear_stop(self) -> None:
-        """Reset the request, so that a tear-down can wait until the runner asks again."""
-        self._stop.clear()
-
-    def stop_requested(self) -> bool:
-        """Whether the plug-in is asked to stop."""
-        return self._stop.is_set()
-
-    def wait_for_stop(self, seconds: float) -> bool:
-        """Wait for a stop request, for at most `seconds`."""
-        return self._stop.wait(seconds)
 
     def open_question(self, number: int) -> None:
         """Expect the end of a question."""
@@ -106,7 +94,7 @@ class RequestState:
     def wait_for_answer(self, number: int) -> QuestionEnd | None:
         """Wait for the end of a question; `None` after a stop request."""
         try:
-            return None if self.stop_requested() else self._questions[number].get()
+            return None if self.stop.is_set() else self._questions[number].get()
         finally:
             del self._questions[number]
 
@@ -118,10 +106,6 @@ class RequestState:
         """Whether the signal that arrived was announced; each is announced once."""
         announced, self._is_signal_announced = self._is_signal_announced, False
         return announced
-
-    def stop_reason(self) -> str:
-        """Return why the plug-in is asked to stop."""
-        return self._stop_reason
 
 
 class Session:
@@ -160,10 +144,8 @@ class Session:
 
     def message(self, kind: str, text: str, **more: object) -> None:
         """Send a message of the plug-in with its location."""
+        more["location"] = more.get("location") or _location.caller()
         params: dict[str, object] = {"kind": kind, "text": text}
-        place = more.pop("location", None) or _location.caller()
-        if isinstance(place, _location.Location):
-            params["location"] = place.as_json()
         params.update((key, value) for key, value in more.items() if value)
         self.notify_in_case("message", params)
 
@@ -178,39 +160,38 @@ class Session:
         """Send a measurement, and return whether it is within its limits."""
         fields = {"name": name, "value": value, "unit": unit, "low": low, "high": high}
         params: dict[str, object] = {k: v for k, v in fields.items() if v is not None}
-        place = _location.caller()
-        if place is not None:
-            params["location"] = place.as_json()
+        _location.add_caller(params)
         self.notify_in_case("measured", params)
         return self._is_within(value, low, high)
 
     def sampled(self, signal: Signal, value: float, at: float | None) -> bool:
         """Add a sample, and return whether it is within its limits."""
-        is_within = self._is_within(value, *signal[2:])
-        self.sampling.add(signal, value, at, case=self.cases.current(), is_within=is_within)
-        return is_within
+        is_good = self._is_within(value, *signal[2:])
+        self.sampling.add(signal, value, at, case=self.cases.current(), is_within=is_good)
+        return is_good
 
     def check_trajectory(self, params: dict[str, object], band: float | None) -> None:
         """Ask the runner to compare a signal with a stored trajectory."""
         if band is not None:
             params["band"] = band
-        place = _location.caller()
-        if place is not None:
-            params["location"] = place.as_json()
+        _location.add_caller(params)
         self.notify_in_case("trajectory", params)
 
     def monitor(self, name: str, formula: str, severity: str) -> None:
         """Declare a formula that judges the rest of the test."""
         params: dict[str, object] = {"name": name, "formula": formula, "severity": severity}
-        place = _location.caller()
-        if place is not None:
-            params["location"] = place.as_json()
+        _location.add_caller(params)
         self.notify("monitor", params)
 
     def error(self, text: str, **more: object) -> None:
         """Send an error."""
         self.request.record("error")
         self.message("error", text, **more)
+
+    def end_with_error(self, text: str) -> NoReturn:
+        """Send an error, which ends the step."""
+        self.error(text)
+        raise AssertionEnded(text)
 
     def skip(self, reason: str) -> None:
         """Skip the innermost case of this thread, or without one the test."""
@@ -229,9 +210,7 @@ class Session:
     def value_of(self, values: dict[str, _Value], name: str, problem: str) -> _Value:
         """Return a named value. For an unknown name, report `problem` and the known names."""
         if name not in values:
-            text = f"{problem} {', '.join(values) or 'none'}"
-            self.error(text)
-            raise AssertionEnded(text)
+            self.end_with_error(f"{problem} {', '.join(values) or 'none'}")
         return values[name]
 
     def provide(self, name: str, value: object) -> None:
@@ -242,15 +221,13 @@ class Session:
     def require_setup_or_run(self, text: str) -> None:
         """Report an error in any other step."""
         if self.phase not in {"setup", "run"}:
-            self.error(text)
-            raise AssertionEnded(text)
+            self.end_with_error(text)
 
     def _is_within(self, value: float, low: float | None, high: float | None) -> bool:
-        is_within = (low is None or value >= low) and (high is None or value <= high)
-        if not (is_within and math.isfinite(value)):
+        is_good = is_within(value, low, high)
+        if not is_good:
             self.request.record("failed")
-            return False
-        return True
+        return is_good
 
 
 _current: Session | None = None

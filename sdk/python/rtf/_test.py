@@ -205,9 +205,7 @@ class TestCase(Plugin):
         full = os.path.abspath(os.fspath(picture))
         _attachment.check(full)
         check: dict[str, object] = {"reference": reference, "tolerance": float(tolerance)}
-        place = _location.caller()
-        if place is not None:
-            check["location"] = place.as_json()
+        _location.add_caller(check)
         _attachment.attach(_session.current(), full, name, "", picture=check)
 
     def check(self, condition: object, text: object) -> bool:

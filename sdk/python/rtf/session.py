@@ -13,12 +13,11 @@ from __future__ import annotations
 
 import atexit
 import json
-import math
 import mimetypes
 import os
 
 from rtf import _attachment, _location
-from rtf._sampling import Sampling
+from rtf._sampling import Sampling, is_within
 from rtf.frameworks.connection import Connection
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
@@ -60,7 +59,7 @@ class Session:
         """
         fields = {"name": name, "value": float(value), "unit": unit, "low": low, "high": high}
         self._report("measured", {k: v for k, v in fields.items() if v is not None})
-        return _is_within(value, low, high)
+        return is_within(value, low, high)
 
     def sample(  # noqa: PLR0913 - as in a test
         self,
@@ -77,11 +76,11 @@ class Session:
         `at` is the sample's own time in seconds; without it, the time since the program
         connected to `rtf`. Samples are sent in batches.
         """
-        is_within = _is_within(value, low, high)
+        is_good = is_within(value, low, high)
         if self._sampling is not None:
             signal = (name, unit, low, high)
-            self._sampling.add(signal, float(value), at, case=None, is_within=is_within)
-        return is_within
+            self._sampling.add(signal, float(value), at, case=None, is_within=is_good)
+        return is_good
 
     def attach(
         self, path: str | os.PathLike[str], name: str = "", media_type: str | None = None
@@ -126,15 +125,9 @@ class Session:
         if self._send is None:
             return
         self.send_samples()
-        place = _location.caller()
-        if place is not None and method != "attached":
-            params["location"] = place.as_json()
+        if method != "attached":
+            _location.add_caller(params)
         self._send(method, params)
-
-
-def _is_within(value: float, low: float | None, high: float | None) -> bool:
-    is_within = (low is None or value >= low) and (high is None or value <= high)
-    return is_within and math.isfinite(value)
 
 
 _current: Session | None = None

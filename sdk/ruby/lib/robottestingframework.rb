@@ -41,8 +41,7 @@ module RobotTestingFramework
 
   # Reports an error (the bench is wrong) and ends this step.
   def assertError(text)
-    RTF::Session.current.error(text)
-    raise RTF::AssertionEnded, text.to_s
+    RTF::Session.current.end_with_error(text)
   end
 
   # The suite's environment string.

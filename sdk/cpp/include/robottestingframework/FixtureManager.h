@@ -36,12 +36,7 @@ public:
 
     // Called before the tests. argv[0] is the first argument, not a name; without
     // a parameter string it is one empty argument. False: it failed.
-    virtual bool setup(int argc, char **argv)
-    {
-        static_cast<void>(argc);
-        static_cast<void>(argv);
-        return true;
-    }
+    virtual bool setup(int /*argc*/, char ** /*argv*/) { return true; }
 
     // Called after the tests, also when setup() failed.
     virtual void tearDown() {}

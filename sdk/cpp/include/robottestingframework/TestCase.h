@@ -28,12 +28,7 @@ public:
 
     // Called first. argv[0] is the test's name, then come the arguments in its
     // parameter string. False: the test cannot be run, which is an error.
-    virtual bool setup(int argc, char **argv)
-    {
-        static_cast<void>(argc);
-        static_cast<void>(argv);
-        return true;
-    }
+    virtual bool setup(int /*argc*/, char ** /*argv*/) { return true; }
 
     // Called last, in any case.
     virtual void tearDown() {}
@@ -102,13 +97,8 @@ private:
 
     bool set_up(int argc, char **argv)
     {
-        bool ready = false;
-        const bool ended = internal::attempt(this, *result_, internal::Phase::test,
-                                             [&] { ready = setup(argc, argv); });
-        if (ended && !ready) {
-            result_.load()->addError(this, TestMessage("setup() returned false"));
-        }
-        return ended && ready;
+        return internal::succeeds(this, *result_, internal::Phase::test, "setup()",
+                                  [&] { return setup(argc, argv); });
     }
 
     // Runs all repetitions, until one fails or the test is asked to stop.

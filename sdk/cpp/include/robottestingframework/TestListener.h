@@ -15,26 +15,14 @@ public:
     virtual ~TestListener() = default;
 
     // `test` may be a suite.
-    virtual void addReport(const Test *test, TestMessage msg)
-    {
-        static_cast<void>(test);
-        static_cast<void>(msg);
-    }
-    virtual void addError(const Test *test, TestMessage msg)
-    {
-        static_cast<void>(test);
-        static_cast<void>(msg);
-    }
-    virtual void addFailure(const Test *test, TestMessage msg)
-    {
-        static_cast<void>(test);
-        static_cast<void>(msg);
-    }
+    virtual void addReport(const Test * /*test*/, TestMessage /*msg*/) {}
+    virtual void addError(const Test * /*test*/, TestMessage /*msg*/) {}
+    virtual void addFailure(const Test * /*test*/, TestMessage /*msg*/) {}
 
-    virtual void startTest(const Test *test) { static_cast<void>(test); }
-    virtual void endTest(const Test *test) { static_cast<void>(test); }
-    virtual void startTestSuite(const Test *test) { static_cast<void>(test); }
-    virtual void endTestSuite(const Test *test) { static_cast<void>(test); }
+    virtual void startTest(const Test * /*test*/) {}
+    virtual void endTest(const Test * /*test*/) {}
+    virtual void startTestSuite(const Test * /*test*/) {}
+    virtual void endTestSuite(const Test * /*test*/) {}
     virtual void startTestRunner() {}
     virtual void endTestRunner() {}
 };

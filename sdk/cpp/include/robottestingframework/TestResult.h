@@ -52,7 +52,6 @@ public:
 
     void addReport(const Test *test, TestMessage msg)
     {
-        const Lock lock(mutex_);
         each([&](TestListener &listener) { listener.addReport(test, msg); });
     }
     // An error or a failure from any caller makes its test or suite fail.
@@ -91,17 +90,14 @@ public:
     }
     void endTestSuite(const Test *test)
     {
-        const Lock lock(mutex_);
         each([&](TestListener &listener) { listener.endTestSuite(test); });
     }
     void startTestRunner()
     {
-        const Lock lock(mutex_);
         each([](TestListener &listener) { listener.startTestRunner(); });
     }
     void endTestRunner()
     {
-        const Lock lock(mutex_);
         each([](TestListener &listener) { listener.endTestRunner(); });
     }
 
@@ -122,6 +118,7 @@ private:
     template <class Call>
     void each(Call call)
     {
+        const Lock lock(mutex_);
         const std::vector<TestListener *> listeners = listeners_;
         for (TestListener *listener : listeners) {
             call(*listener);

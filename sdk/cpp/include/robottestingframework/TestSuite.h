@@ -106,13 +106,8 @@ protected:
     {
         for (FixtureManager *fixture : fixtures_) {
             ++up_; // a failed fixture may need its tear-down most
-            bool ready = false;
-            const bool ended = internal::attempt(this, *result_, internal::Phase::tear_down,
-                                                 [&] { ready = fixture->setup(); });
-            if (ended && !ready) {
-                result_->addError(this, TestMessage("setup() of a fixture returned false"));
-            }
-            if (!ended || !ready) {
+            if (!internal::succeeds(this, *result_, internal::Phase::tear_down,
+                                    "setup() of a fixture", [&] { return fixture->setup(); })) {
                 return false;
             }
         }
@@ -188,13 +183,8 @@ private:
     bool all_well()
     {
         for (FixtureManager *fixture : fixtures_) {
-            bool well = false;
-            const bool ended = internal::attempt(this, *result_, internal::Phase::tear_down,
-                                                 [&] { well = fixture->check(); });
-            if (ended && !well) {
-                result_->addError(this, TestMessage("check() of a fixture returned false"));
-            }
-            if (!ended || !well) {
+            if (!internal::succeeds(this, *result_, internal::Phase::tear_down,
+                                    "check() of a fixture", [&] { return fixture->check(); })) {
                 return false;
             }
         }

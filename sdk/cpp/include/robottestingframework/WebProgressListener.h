@@ -16,7 +16,6 @@
 
 #include "TestListener.h"
 #include "TestSuite.h"
-#include "internal/Json.h"
 #include "internal/LoopbackServer.h"
 #include "internal/WebPage.h"
 #include "internal/WebStatus.h"

@@ -41,19 +41,14 @@ public:
     virtual bool check() { return true; }
 
     // Called before a test starts. False: the fixture collapsed.
-    virtual bool testStarted(const Test &test)
-    {
-        static_cast<void>(test);
-        return true;
-    }
+    virtual bool testStarted([[maybe_unused]] const Test &test) { return true; }
 
     // Called after a test with its verdict: "passed", "failed", "error", "crashed", ...
     // Reports, measurements and attachments of this function belong to that test.
-    virtual bool testFinished(const Test &test, std::string_view verdict, std::string_view reason)
+    virtual bool testFinished([[maybe_unused]] const Test &test,
+                              [[maybe_unused]] std::string_view verdict,
+                              [[maybe_unused]] std::string_view reason)
     {
-        static_cast<void>(test);
-        static_cast<void>(verdict);
-        static_cast<void>(reason);
         return true;
     }
 

@@ -28,12 +28,7 @@ public:
 
     // Called first, with arguments as main() gets them: argv[0] is the plug-in's
     // name in the suite. False: the set-up failed.
-    virtual bool setup(int argc, char **argv)
-    {
-        static_cast<void>(argc);
-        static_cast<void>(argv);
-        return true;
-    }
+    virtual bool setup([[maybe_unused]] int argc, [[maybe_unused]] char **argv) { return true; }
 
     // Called last, in any case.
     virtual void tearDown() {}

@@ -39,7 +39,7 @@ inline bool is_running_in_rtf() noexcept
 inline bool measure(const std::string &name, double value, const std::string &unit = "",
                     double low = internal::session::no_low,
                     double high = internal::session::no_high,
-                    internal::session::Caller here = internal::session::Caller::current()) noexcept
+                    Location here = Location::current()) noexcept
 {
     return internal::session::measure({name, unit, low, high, here}, value);
 }
@@ -49,7 +49,7 @@ inline bool measure(const std::string &name, double value, const std::string &un
 // started.
 inline bool sample(const std::string &name, double value, const std::string &unit = "",
                    double low = internal::session::no_low, double high = internal::session::no_high,
-                   internal::session::Caller here = internal::session::Caller::current()) noexcept
+                   Location here = Location::current()) noexcept
 {
     const double now = internal::session::Channel::instance().seconds();
     return internal::session::sample({name, unit, low, high, here}, {SamplePoint(now, value)});
@@ -60,7 +60,7 @@ inline bool sample(const std::string &name, double value, const std::string &uni
 inline bool sample(const std::string &name, const std::vector<SamplePoint> &points,
                    const std::string &unit = "", double low = internal::session::no_low,
                    double high = internal::session::no_high,
-                   internal::session::Caller here = internal::session::Caller::current()) noexcept
+                   Location here = Location::current()) noexcept
 {
     return internal::session::sample({name, unit, low, high, here}, points);
 }
@@ -69,24 +69,21 @@ inline bool sample(const std::string &name, const std::vector<SamplePoint> &poin
 // deleted afterwards. A file that cannot be attached is an error of the case; the function
 // then returns false.
 inline bool attach(const std::string &path, const std::string &name = "",
-                   const std::string &media_type = "",
-                   internal::session::Caller here = internal::session::Caller::current()) noexcept
+                   const std::string &media_type = "", Location here = Location::current()) noexcept
 {
     return internal::session::attach(path, name, media_type, here);
 }
 
 // Adds a text to the results.
-inline void report(const std::string &text,
-                   internal::session::Caller here = internal::session::Caller::current()) noexcept
+inline void report(const std::string &text, Location here = Location::current()) noexcept
 {
     internal::session::message("report", text, here);
 }
 
 // A value that a fixture provided, as text: fixture_value("simulator.port"). Without rtf, it
 // is `otherwise`. If rtf runs the program, an unknown name is an error of the case.
-inline std::string
-fixture_value(const std::string &name, const std::string &otherwise = "",
-              internal::session::Caller here = internal::session::Caller::current()) noexcept
+inline std::string fixture_value(const std::string &name, const std::string &otherwise = "",
+                                 Location here = Location::current()) noexcept
 {
     return internal::session::fixture_value(name, otherwise, here);
 }

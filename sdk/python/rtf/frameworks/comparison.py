@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import numbers
 
+# As `typing.TYPE_CHECKING`, without the time that its import takes.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 # The longest sequences that are compared number by number.
 _NUMBERS = 200
 
 
-def compared(got: object, expected: object, tolerance: object) -> dict[str, object] | None:
+def compared(got: object, expected: object, tolerance: Any) -> dict[str, object] | None:
     """Return the `comparison` of a message; `None` if these are not numbers.
 
     Two sequences of numbers have the same length, and one tolerance.
@@ -18,23 +23,18 @@ def compared(got: object, expected: object, tolerance: object) -> dict[str, obje
         return None
     if len(got_numbers) != len(expected_numbers):
         return None
-    if isinstance(tolerance, bool) or not isinstance(tolerance, numbers.Real):
+    if not is_number(tolerance):
         return None
-    return {
-        "expected": expected_numbers,
-        "got": got_numbers,
-        "tolerance": float(tolerance),
-    }
+    return {"expected": expected_numbers, "got": got_numbers, "tolerance": float(tolerance)}
 
 
-def _as_numbers(value: object) -> list[float] | None:
-    if isinstance(value, bool):
-        return None
-    if isinstance(value, numbers.Real):
-        return [float(value)]
-    is_short = isinstance(value, (list, tuple)) and 0 < len(value) <= _NUMBERS
-    if not is_short or not isinstance(value, (list, tuple)):
-        return None
-    if any(isinstance(entry, bool) or not isinstance(entry, numbers.Real) for entry in value):
-        return None
-    return [float(entry) for entry in value]
+def is_number(value: object) -> bool:
+    """Whether this is a real number, and not a truth value."""
+    return isinstance(value, numbers.Real) and not isinstance(value, bool)
+
+
+def _as_numbers(value: Any) -> list[float] | None:
+    entries = value if isinstance(value, (list, tuple)) else [value]
+    if 0 < len(entries) <= _NUMBERS and all(map(is_number, entries)):
+        return [float(entry) for entry in entries]
+    return None

@@ -11,7 +11,7 @@ import socket
 import sys
 import threading
 
-from rtf.host.channel import end_without_runner
+from rtf.host.channel import encoded, end_without_runner
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
@@ -104,9 +104,17 @@ class Connection:
             if self._ask(packet) != _ACCEPTED:
                 raise Rejected(f"the host rejected `{method}`")
 
+    def plan(self, names: list[str]) -> dict[str, bool]:
+        """Announce cases. Returns for each name whether it runs."""
+        runs: dict[str, bool] = {}
+        for portion in _portions(names):
+            answer = self.ask("cases-planned", {"names": portion})
+            runs.update(zip(portion, (byte == ord(_ACCEPTED) for byte in answer)))
+        return runs
+
     def ask(self, method: str, params: Mapping[str, object]) -> bytes:
         """Send a packet, and return the answer."""
-        return self._ask(_encode({"method": method, "params": params}))
+        return self._ask(encoded({"method": method, "params": params}, _ENCODER))
 
     def _ask(self, packet: bytes) -> bytes:
         if not self.is_ours():
@@ -132,7 +140,7 @@ def _is_session(descriptor: int) -> bool:
         return False
 
 
-def portions(names: list[str]) -> Iterator[list[str]]:
+def _portions(names: list[str]) -> Iterator[list[str]]:
     """Split names into lists that fit into a packet."""
     portion: list[str] = []
     size = 0
@@ -153,27 +161,9 @@ def encoded_text(text: str) -> str:
     return _ENCODER.encode(text)
 
 
-def _encode(packet: dict[str, object]) -> bytes:
-    try:
-        text = _ENCODER.encode(packet)
-    except ValueError:  # a number that is not finite
-        text = json.dumps(_finite(packet), ensure_ascii=False)
-    return text.encode("utf-8", "replace")
-
-
-def _finite(value: object) -> object:
-    if isinstance(value, float):
-        return value if abs(value) < float("inf") else None
-    if isinstance(value, dict):
-        return {key: _finite(entry) for key, entry in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_finite(entry) for entry in value]
-    return value
-
-
 def _packets(packet: dict[str, object]) -> list[bytes]:
     """Encode a packet; a text that is too long for one is sent in parts."""
-    data = _encode(packet)
+    data = encoded(packet, _ENCODER)
     if len(data) <= PACKET_BYTES:
         return [data]
     params: Any = packet["params"]

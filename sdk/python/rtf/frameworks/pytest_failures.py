@@ -10,7 +10,7 @@ import pytest
 from rtf.frameworks.comparison import compared
 
 if TYPE_CHECKING:
-    from types import CodeType, TracebackType
+    from types import CodeType, FrameType, TracebackType
 
 # An attribute of reports with our details. Reports of pytest-xdist's workers carry it.
 DETAILS = "_rtf_details"
@@ -43,13 +43,11 @@ class FailureDetails:
 
 def _frame_of_test() -> tuple[Any, int] | None:
     """Return the innermost frame outside pytest."""
-    frame = sys._getframe(2)
+    frame: FrameType | None = sys._getframe(2)
     while frame is not None:
         module = frame.f_globals.get("__name__", "")
         if not module.startswith(("_pytest.", "pluggy.", "rtf.frameworks.")):
             return frame.f_code, frame.f_lineno
-        if frame.f_back is None:
-            return None
         frame = frame.f_back
     return None
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numbers
 import os
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +9,8 @@ import pytest
 
 from rtf import session as rtf_session
 from rtf.frameworks import pytest_details, pytest_options
-from rtf.frameworks.connection import Rejected, encoded_text, portions
+from rtf.frameworks.comparison import is_number
+from rtf.frameworks.connection import Rejected, encoded_text
 from rtf.frameworks.pytest_failures import DETAILS, FailureDetails
 from rtf.frameworks.pytest_options import VALUES
 from rtf.frameworks.pytest_texts import (
@@ -37,26 +37,12 @@ PHASES = ("setup", "call", "teardown")
 class OpenCase:
     """A case that runs."""
 
-    __slots__ = (
-        "has_problem",
-        "is_called",
-        "is_set_up",
-        "name",
-        "outcome",
-        "path",
-        "reason",
-        "rerun_in",
-        "seconds",
-        "start",
-    )
-
     def __init__(self, start: dict[str, Any], path: str | None = None) -> None:
         """Its result is that of its messages, unless a report says otherwise."""
         self.start = start
         self.path: str = start["name"] if path is None else path
-        path = self.path
         # As JSON.
-        self.name = encoded_text(path)
+        self.name = encoded_text(self.path)
         self.seconds = 0.0
         self.has_problem = False
         self.outcome: str | None = None
@@ -163,10 +149,7 @@ class Reporter(FailureDetails):
     def _plan(self, names: list[str]) -> dict[str, bool]:
         self._is_planned = True
         skipped = list(self._skipped_modules)
-        runs: dict[str, bool] = {}
-        for portion in portions(names + skipped):
-            answer = self._connection.ask("cases-planned", {"names": portion})
-            runs.update(zip(portion, (byte == ord("0") for byte in answer)))
+        runs = self._connection.plan(names + skipped)
         for name in skipped:
             if runs[name]:
                 self._connection.post("case-started", {"name": name})
@@ -351,8 +334,8 @@ class Reporter(FailureDetails):
             for name, value in report.user_properties:
                 self._report_property(case, name, value)
 
-    def _report_property(self, case: OpenCase, name: str, value: object) -> None:
-        if isinstance(value, numbers.Real) and not isinstance(value, bool):
+    def _report_property(self, case: OpenCase, name: str, value: Any) -> None:
+        if is_number(value):
             params = {"name": str(name), "value": float(value), "unit": "", "case": case.path}
             self._connection.post("measured", params)
         else:

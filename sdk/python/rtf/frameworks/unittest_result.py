@@ -10,7 +10,6 @@ from _thread import get_ident
 from time import perf_counter_ns
 
 from rtf.frameworks.comparison import compared
-from rtf.frameworks.connection import portions
 from rtf.frameworks.stop import Stop
 from rtf.frameworks.unittest_tests import class_name, import_problem, start
 
@@ -56,10 +55,7 @@ class Reporter(unittest.TestResult):
 
     def plan(self, tests: list[Any]) -> dict[str, bool]:
         """Announce tests. Returns for each name whether it runs."""
-        runs: dict[str, bool] = {}
-        for portion in portions([self.name(test) for test in tests]):
-            answer = self._connection.ask("cases-planned", {"names": portion})
-            runs.update(zip(portion, (byte == ord("0") for byte in answer)))
+        runs = self._connection.plan([self.name(test) for test in tests])
         for test in tests:
             name = self.name(test)
             if runs[name]:

@@ -14,12 +14,10 @@ if TYPE_CHECKING:
 
 def leaves(suite: Any) -> Iterator[Any]:
     """Return all tests in a suite, in order."""
-    try:
-        tests = iter(suite)
-    except TypeError:
+    if _is_test(suite):
         yield suite
         return
-    for test in tests:
+    for test in suite:
         yield from leaves(test)
 
 

@@ -101,13 +101,18 @@ class Channel:
 
 
 def encode(line: dict[str, object]) -> bytes:
-    """Encode one line. Non-finite numbers become ``null``."""
+    """Encode one line."""
+    return encoded(line, _ENCODER) + b"\n"
+
+
+def encoded(value: object, encoder: json.JSONEncoder) -> bytes:
+    """Encode a value. Non-finite numbers become ``null``."""
     try:
-        text = _ENCODER.encode(line)
+        text = encoder.encode(value)
     except ValueError:
-        text = _ENCODER.encode(_finite(line))
+        text = encoder.encode(_finite(value))
     # A file name that is not UTF-8 holds lone surrogates, which JSON cannot carry.
-    return text.encode("utf-8", "replace") + b"\n"
+    return text.encode("utf-8", "replace")
 
 
 def _finite(value: object) -> object:

@@ -29,14 +29,11 @@ def check_file(file: str) -> dict[str, object]:
         if problem.lineno:
             found["line"] = problem.lineno
         return found
-    except OSError as problem:
-        return {"file": file, "ok": False, "message": problem.strerror or str(problem)}
-    except (ValueError, RecursionError, MemoryError) as problem:
-        return {"file": file, "ok": False, "message": str(problem)}
+    except (OSError, ValueError, RecursionError, MemoryError) as problem:
+        text = getattr(problem, "strerror", None) or str(problem)
+        return {"file": file, "ok": False, "message": text}
     kinds = _kinds(tree)
-    if kinds is None:
-        return {"file": file, "ok": True}
-    return {"file": file, "ok": True, "kinds": kinds}
+    return {"file": file, "ok": True, **({} if kinds is None else {"kinds": kinds})}
 
 
 def _kinds(tree: ast.Module) -> list[str] | None:

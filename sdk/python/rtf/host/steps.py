@@ -16,9 +16,11 @@ from rtf.host import load
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from types import FrameType
-    from typing import Callable
+    from typing import Callable, TypeVar
 
     from rtf._session import Session
+
+    _Result = TypeVar("_Result")
 
 Answer = dict[str, object]
 
@@ -114,15 +116,13 @@ def tear_down_fixture(session: Session, fixture: FixtureManager | None) -> Answe
 
 
 def _load(session: Session, base: type[load._P]) -> load._P | None:
-    loaded: list[load._P] = []
-    _guard(session, lambda: loaded.append(load.load(session.task.file, base)))
+    loaded = _guard(session, lambda: load.load(session.task.file, base))
     return loaded[0] if loaded else None
 
 
 def _step(session: Session, function: Callable[[], object], step: str) -> None:
     """Carry out a step and check its result."""
-    results: list[object] = []
-    _guard(session, lambda: results.append(function()))
+    results = _guard(session, function)
     if results and step != "run" and _is_false(results[0]):
         session.request.record("error" if step == "setup" else "failed", f"{step} returned false")
     if results and (hasattr(results[0], "__await__") or hasattr(results[0], "__next__")):
@@ -131,17 +131,22 @@ def _step(session: Session, function: Callable[[], object], step: str) -> None:
 
 
 def _tear_down(session: Session, plugin: TestCase | FixtureManager) -> None:
-    session.request.clear_stop()
+    # It can wait until the runner asks again.
+    session.request.stop.clear()
     _guard(session, plugin.tearDown)
 
 
-def _guard(session: Session, function: Callable[[], object]) -> None:
-    """Call the plug-in and report its exception. Only `SystemExit` propagates."""
+def _guard(session: Session, function: Callable[[], _Result]) -> list[_Result]:
+    """Call the plug-in; return its result, or nothing after an exception, which is reported.
+
+    Only `SystemExit` propagates.
+    """
     process = os.getpid()
+    results: list[_Result] = []
     try:
         try:
             _interruptible.append(session)
-            function()
+            results.append(function())
         finally:
             _interruptible.clear()
     except StepEnded:
@@ -152,13 +157,14 @@ def _guard(session: Session, function: Callable[[], object]) -> None:
         session.error(str(problem))
     except BaseException as problem:  # noqa: BLE001 - also KeyboardInterrupt and the plug-in's own
         # A library that replaced the signal handler raises KeyboardInterrupt.
-        if not (isinstance(problem, KeyboardInterrupt) and session.request.stop_requested()):
+        if not (isinstance(problem, KeyboardInterrupt) and session.request.stop.is_set()):
             _exceptions.report(session, problem)
     if os.getpid() != process:
         # A forked child returned from the plug-in; its parent serves the runner.
         _flush_output()
         session.sampling.send()
         os._exit(0)
+    return results
 
 
 def _is_false(result: object) -> bool:
@@ -182,5 +188,5 @@ def stop_by_signal(number: int, frame: FrameType | None) -> None:
     session = _session.running()
     if session is None or not session.request.take_announced_signal():
         signal.default_int_handler(number, frame)
-    elif _interruptible and session.request.stop_requested():
-        raise Interrupted(session.request.stop_reason())
+    elif _interruptible and session.request.stop.is_set():
+        raise Interrupted(session.request.stop_reason)

@@ -1,6 +1,5 @@
 # frozen_string_literal: true
 
-require "rtf/stop"
 require "rtf/text"
 
 module RTF
@@ -30,8 +29,7 @@ module RTF
       problem = answer("#{verb}\n#{@name}\n#{@session.task.name}\n")
       return if problem.empty?
 
-      @session.error("the fault \"#{@name}\" was not #{done}: #{problem}")
-      raise AssertionEnded, problem
+      @session.end_with_error("the fault \"#{@name}\" was not #{done}: #{problem}")
     end
 
     # The problem, empty if it is done.

@@ -73,8 +73,7 @@ module RTF
 
     # Reports an error (the bench is wrong (no network, no calibration file), and ends this step.
     def error(text)
-      Session.current.error(text)
-      raise AssertionEnded, text.to_s
+      Session.current.end_with_error(text)
     end
 
     # Asserts that `condition` holds; if it does not, this step ends. With one

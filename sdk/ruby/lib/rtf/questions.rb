@@ -44,12 +44,7 @@ module RTF
       ended = request.wait_for_answer(number)
       raise Interrupted, request.stop_reason if ended.nil?
 
-      ended[:answer] || stop(ended[:problem])
-    end
-
-    def stop(problem)
-      @session.error(problem)
-      raise AssertionEnded, problem
+      ended[:answer] || @session.end_with_error(ended[:problem])
     end
 
     # Attaches a picture, and returns the path of the copy.
@@ -57,7 +52,7 @@ module RTF
       Attachment.check(path)
       start = File.binread(path, 8) || ""
       type = SIGNATURES.find { |signature, _| start.start_with?(signature) }&.last
-      stop("the picture `#{path}` is neither PNG nor JPEG") unless type
+      @session.end_with_error("the picture `#{path}` is neither PNG nor JPEG") unless type
       @session.attach(path, File.basename(path), type)
     end
   end

@@ -79,11 +79,7 @@ module RTF
     # Asks an operator, and returns the answer.
     def ask(text, choices, **options)
       require_setup_or_run("questions are allowed in `setup` and `run` of a test only")
-      if @cases.forked?
-        text = "a process that the plug-in forked cannot ask"
-        error(text)
-        raise AssertionEnded, text
-      end
+      end_with_error("a process that the plug-in forked cannot ask") if @cases.forked?
       Questions.new(self).ask(text, choices, **options)
     end
 
@@ -104,6 +100,12 @@ module RTF
     def error(text, **more)
       @request.record("error")
       message("error", text, **more)
+    end
+
+    # Sends an error, which ends the step.
+    def end_with_error(text)
+      error(text)
+      raise AssertionEnded, text.to_s
     end
 
     # Sends an exception as an error, with its class, text, location and backtrace.
@@ -135,9 +137,7 @@ module RTF
     # The value with this name. For an unknown name, reports `problem` and the known names.
     def value_of(values, name, problem)
       values.fetch(name.to_s) do
-        text = "#{problem} #{values.empty? ? "none" : values.keys.join(", ")}"
-        error(text)
-        raise AssertionEnded, text
+        end_with_error("#{problem} #{values.empty? ? "none" : values.keys.join(", ")}")
       end
     end
 
@@ -177,10 +177,7 @@ module RTF
     private
 
     def require_setup_or_run(text)
-      return if %w[setup run].include?(@phase)
-
-      error(text)
-      raise AssertionEnded, text
+      end_with_error(text) unless %w[setup run].include?(@phase)
     end
   end
 end

@@ -17,7 +17,7 @@
 #define ROBOTTESTINGFRAMEWORK_PREPARE_PLUGIN(classname)                                            \
     extern "C" RTF_EXPORT const rtf_plugin_table *rtf_plugin(void)                                 \
     {                                                                                              \
-        return ::robottestingframework::internal::TestTable<classname>::table(#classname);         \
+        return ::robottestingframework::internal::test_table<classname>(#classname);               \
     }                                                                                              \
     SHLIBPP_DEFINE_SHARED_SUBCLASS(robottestingframework_dll_factory, classname,                   \
                                    ::robottestingframework::TestCase)
@@ -25,7 +25,7 @@
 #define ROBOTTESTINGFRAMEWORK_PREPARE_FIXTURE_PLUGIN(classname)                                    \
     extern "C" RTF_EXPORT const rtf_plugin_table *rtf_plugin(void)                                 \
     {                                                                                              \
-        return ::robottestingframework::internal::FixtureTable<classname>::table(#classname);      \
+        return ::robottestingframework::internal::fixture_table<classname>(#classname);            \
     }                                                                                              \
     SHLIBPP_DEFINE_SHARED_SUBCLASS(robottestingframework_fixture_factory, classname,               \
                                    ::robottestingframework::FixtureManager)

@@ -70,6 +70,17 @@ bool attempt(const Test *test, TestResult &result, Phase phase, Step step)
     return false;
 }
 
+// Whether a step returned true. That it returned false is an error.
+template <class Step>
+bool succeeds(const Test *test, TestResult &result, Phase phase, const std::string &name, Step step)
+{
+    bool is_good = false;
+    if (attempt(test, result, phase, [&] { is_good = step(); }) && !is_good) {
+        result.addError(test, TestMessage(name + " returned false"));
+    }
+    return is_good;
+}
+
 } // namespace internal
 } // namespace robottestingframework
 

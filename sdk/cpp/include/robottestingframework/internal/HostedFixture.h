@@ -137,16 +137,13 @@ private:
 
 // The table of a plug-in whose fixture is a T.
 template <class T>
-struct FixtureTable : PluginTable<HostedFixture, T>
+const rtf_plugin_table *fixture_table(const char *name)
 {
-    static const rtf_plugin_table *table(const char *name)
-    {
-        rtf_plugin_table *const table =
-            PluginTable<HostedFixture, T>::table(RTF_KIND_FIXTURE, name);
-        table->check = PluginTable<HostedFixture, T>::check;
-        return table;
-    }
-};
+    using Functions = PluginTable<HostedFixture, T>;
+    rtf_plugin_table *const table = Functions::table(RTF_KIND_FIXTURE, name);
+    table->check = Functions::check;
+    return table;
+}
 
 } // namespace internal
 } // namespace robottestingframework

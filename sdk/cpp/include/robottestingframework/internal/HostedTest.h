@@ -136,15 +136,13 @@ private:
 
 // The table of a plug-in whose test is a T.
 template <class T>
-struct TestTable : PluginTable<HostedTest, T>
+const rtf_plugin_table *test_table(const char *name)
 {
-    static const rtf_plugin_table *table(const char *name)
-    {
-        rtf_plugin_table *const table = PluginTable<HostedTest, T>::table(RTF_KIND_TEST, name);
-        table->run = PluginTable<HostedTest, T>::run;
-        return table;
-    }
-};
+    using Functions = PluginTable<HostedTest, T>;
+    rtf_plugin_table *const table = Functions::table(RTF_KIND_TEST, name);
+    table->run = Functions::run;
+    return table;
+}
 
 } // namespace internal
 } // namespace robottestingframework

@@ -10,10 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "Json.h"
+#include <rtf/internal/SessionJson.hpp>
 
 namespace robottestingframework {
 namespace internal {
+
+using ::rtf::internal::session::json_string;
 
 // Text between HTML tags, without a character that JSON would escape.
 inline std::string html_text(const std::string &text)

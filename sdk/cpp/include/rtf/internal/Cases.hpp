@@ -3,7 +3,6 @@
 #ifndef RTF_INTERNAL_CASES_HPP
 #define RTF_INTERNAL_CASES_HPP
 
-#include <cstddef>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -35,12 +34,8 @@ class Case
 {
 public:
     Case(Location here, std::string_view name, std::initializer_list<CaseParameter> parameters = {})
-        : here_(here), name_(name)
+        : here_(here), name_(name), parameters_(parameters)
     {
-        for (const CaseParameter &parameter : parameters) {
-            names_.push_back(parameter.name);
-            values_.push_back(parameter.value);
-        }
     }
 
     template <class Body>
@@ -68,23 +63,19 @@ private:
     bool begin(const rtf_host &table) const
     {
         std::vector<rtf_parameter> parameters;
-        for (std::size_t index = 0; index < names_.size(); ++index) {
-            parameters.push_back(rtf_parameter{to_text(names_[index]), to_text(values_[index])});
+        for (const CaseParameter &parameter : parameters_) {
+            parameters.push_back({to_text(parameter.name), to_text(parameter.value)});
         }
-        rtf_case message;
-        message.size = sizeof message;
+        auto message = message_at<rtf_case>(here_);
         message.name = to_text(name_);
         message.parameters = parameters.data();
         message.parameter_count = parameters.size();
-        message.file = here_.file;
-        message.line = here_.line;
         return table.case_begin(table.context, &message) != 0;
     }
 
     Location here_;
     std::string_view name_;
-    std::vector<std::string_view> names_;
-    std::vector<std::string> values_;
+    std::vector<CaseParameter> parameters_;
 };
 
 [[noreturn]] inline void skip(Location here, std::string_view reason)

@@ -3,7 +3,6 @@
 #ifndef RTF_INTERNAL_ENTRY_HPP
 #define RTF_INTERNAL_ENTRY_HPP
 
-#include <string_view>
 #include <type_traits>
 
 #include <rtf/internal/Exceptions.hpp>
@@ -16,45 +15,42 @@ struct Test;
 
 namespace internal {
 
-// Calls a step, and reports its exception as an error.
+// Calls a step, and reports its exception as an error. A step without a result succeeds.
 template <class Step>
 int32_t guarded(Step &&step) noexcept
 {
     try {
-        return step() ? RTF_DONE : RTF_REFUSED;
+        if constexpr (std::is_void_v<decltype(step())>) {
+            step();
+            return RTF_DONE;
+        } else {
+            return step() ? RTF_DONE : RTF_REFUSED;
+        }
     } catch (...) {
         report_exception();
     }
     return RTF_STOPPED;
 }
 
-// Whether a fixture overrides testStarted or testFinished. A private function is an
-// override.
-template <class T, class = void>
-struct OverridesStarted : std::true_type
-{
-};
+template <class T>
+using Started = decltype(&T::testStarted);
 
 template <class T>
-struct OverridesStarted<T, std::void_t<decltype(&T::testStarted)>>
-    : std::bool_constant<
-          !std::is_same_v<decltype(&T::testStarted), bool (FixtureManager::*)(const Test &)>>
+using Finished = decltype(&T::testFinished);
+
+// Whether a fixture overrides one of these functions. A private function is an override.
+template <template <class> class Function, class T, class = void>
+struct Overrides : std::true_type
 {
 };
 
-template <class T, class = void>
-struct OverridesFinished : std::true_type
+template <template <class> class Function, class T>
+struct Overrides<Function, T, std::void_t<Function<T>>>
+    : std::bool_constant<!std::is_same_v<Function<T>, Function<FixtureManager>>>
 {
 };
 
-template <class T>
-struct OverridesFinished<T, std::void_t<decltype(&T::testFinished)>>
-    : std::bool_constant<!std::is_same_v<decltype(&T::testFinished),
-                                         bool (FixtureManager::*)(const Test &, std::string_view,
-                                                                  std::string_view)>>
-{
-};
-
+// The functions of the table. Those of the other kind of plug-in are not instantiated.
 template <class T>
 struct Entry
 {
@@ -71,14 +67,16 @@ struct Entry
 
     static Base &get(void *self) { return *static_cast<T *>(self); }
 
+    static Notified notified(const rtf_test &test)
+    {
+        return {test.id, from_text(test.name), test.repetition, test.attempt};
+    }
+
     static void *create(const rtf_host *host)
     {
         current_host.store(host, std::memory_order_release);
         T *made = nullptr;
-        guarded([&] {
-            made = new T();
-            return true;
-        });
+        guarded([&] { made = new T(); });
         return made;
     }
 
@@ -91,53 +89,30 @@ struct Entry
 
     static int32_t run(void *self)
     {
-        return guarded([&] {
-            if constexpr (!is_fixture) {
-                get(self).run();
-            }
-            return true;
-        });
+        return guarded([&] { get(self).run(); });
     }
 
     static int32_t check(void *self)
     {
-        return guarded([&] {
-            if constexpr (is_fixture) {
-                return get(self).check();
-            }
-            return true;
-        });
+        return guarded([&] { return get(self).check(); });
     }
 
     static int32_t test_started(void *self, const rtf_test *test)
     {
-        return guarded([&] {
-            if constexpr (is_fixture) {
-                return get(self).testStarted(
-                    Notified{test->id, from_text(test->name), test->repetition, test->attempt});
-            }
-            return true;
-        });
+        return guarded([&] { return get(self).testStarted(notified(*test)); });
     }
 
     static int32_t test_finished(void *self, const rtf_test *test)
     {
         return guarded([&] {
-            if constexpr (is_fixture) {
-                return get(self).testFinished(
-                    Notified{test->id, from_text(test->name), test->repetition, test->attempt},
-                    from_text(test->verdict), from_text(test->reason));
-            }
-            return true;
+            return get(self).testFinished(notified(*test), from_text(test->verdict),
+                                          from_text(test->reason));
         });
     }
 
     static int32_t tear_down(void *self)
     {
-        return guarded([&] {
-            get(self).tearDown();
-            return true;
-        });
+        return guarded([&] { get(self).tearDown(); });
     }
 };
 
@@ -149,17 +124,19 @@ constexpr rtf_plugin_table table_of(const char *name)
     table.abi_major = RTF_ABI_MAJOR;
     table.abi_minor = RTF_ABI_MINOR;
     table.size = sizeof table;
-    table.kind = Own::is_fixture ? RTF_KIND_FIXTURE : RTF_KIND_TEST;
     table.name = name;
     table.create = Own::create;
     table.destroy = Own::destroy;
     table.setup = Own::setup;
-    table.run = Own::is_fixture ? nullptr : Own::run;
-    table.check = Own::is_fixture ? Own::check : nullptr;
     table.tear_down = Own::tear_down;
     if constexpr (Own::is_fixture) {
-        table.test_started = OverridesStarted<T>::value ? Own::test_started : nullptr;
-        table.test_finished = OverridesFinished<T>::value ? Own::test_finished : nullptr;
+        table.kind = RTF_KIND_FIXTURE;
+        table.check = Own::check;
+        table.test_started = Overrides<Started, T>::value ? Own::test_started : nullptr;
+        table.test_finished = Overrides<Finished, T>::value ? Own::test_finished : nullptr;
+    } else {
+        table.kind = RTF_KIND_TEST;
+        table.run = Own::run;
     }
     return table;
 }

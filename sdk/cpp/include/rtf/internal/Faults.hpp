@@ -17,11 +17,7 @@ namespace internal {
 // Injects or removes a fault. The host has reported a problem as an error, which ends the step.
 inline void request_fault(Location here, std::int32_t action, std::string_view name)
 {
-    const rtf_host &table = host();
-    if (table.size < offsetof(rtf_host, fault) + sizeof table.fault) {
-        error(here, "this rtf is too old for faults: its plug-in interface is 1." +
-                        std::to_string(table.abi_minor));
-    }
+    const rtf_host &table = host_with(offsetof(rtf_host, fault), here, "faults");
     if (table.fault(table.context, action, to_text(name), here.file, here.line) != RTF_DONE) {
         throw Stop();
     }

@@ -23,16 +23,24 @@ struct Stop
 
 enum class Critical { no, yes };
 
+// A message of any type, with its size and location.
+template <class Message>
+Message message_at(Location here)
+{
+    Message message{};
+    message.size = sizeof message;
+    message.file = here.file;
+    message.line = here.line;
+    return message;
+}
+
 inline void send(int32_t kind, std::string_view text, Location here,
                  const rtf_comparison *comparison = nullptr, Critical critical = Critical::no)
 {
-    rtf_message message;
-    message.size = sizeof message;
+    auto message = message_at<rtf_message>(here);
     message.kind = kind;
     message.critical = critical == Critical::yes ? 1 : 0;
     message.text = to_text(text);
-    message.file = here.file;
-    message.line = here.line;
     message.comparison = comparison;
     host().message(host().context, &message);
 }
@@ -76,15 +84,21 @@ inline void require_critical(Location here, bool holds, std::string_view text)
     throw Stop();
 }
 
-// The host's table, if it has the functions of version 1.3.
-inline const rtf_host &host_since_1_3(Location here, std::string_view feature)
+// The host's table, if it has the function at this offset: that of an older host is shorter.
+inline const rtf_host &host_with(std::size_t function, Location here, std::string_view feature)
 {
     const rtf_host &table = host();
-    if (table.size < offsetof(rtf_host, ask) + sizeof table.ask) {
+    if (table.size <= function) {
         error(here, "this rtf is too old for " + std::string(feature) +
                         ": its plug-in interface is 1." + std::to_string(table.abi_minor));
     }
     return table;
+}
+
+// The host's table, if it has the functions of version 1.3.
+inline const rtf_host &host_since_1_3(Location here, std::string_view feature)
+{
+    return host_with(offsetof(rtf_host, ask), here, feature);
 }
 
 } // namespace internal

@@ -4,7 +4,6 @@
 #define RTF_INTERNAL_MONITOR_HPP
 
 #include <cstddef>
-#include <string>
 #include <string_view>
 
 #include <rtf/internal/Message.hpp>
@@ -35,18 +34,11 @@ inline std::string_view to_string(Severity severity)
 inline void monitor(Location here, std::string_view formula, std::string_view name,
                     Severity severity)
 {
-    const rtf_host &table = host();
-    if (table.size < offsetof(rtf_host, monitor) + sizeof table.monitor) {
-        error(here, "this rtf is too old for monitors: its plug-in interface is 1." +
-                        std::to_string(table.abi_minor));
-    }
-    rtf_monitor declared{};
-    declared.size = sizeof declared;
+    const rtf_host &table = host_with(offsetof(rtf_host, monitor), here, "monitors");
+    auto declared = message_at<rtf_monitor>(here);
     declared.formula = to_text(formula);
     declared.name = to_text(name);
     declared.severity = to_text(to_string(severity));
-    declared.file = here.file;
-    declared.line = here.line;
     table.monitor(table.context, &declared);
 }
 

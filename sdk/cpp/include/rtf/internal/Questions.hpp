@@ -34,16 +34,13 @@ inline std::string ask(Location here, const Question &question)
     for (const std::string &choice : question.choices) {
         choices.push_back(to_text(choice));
     }
-    rtf_question message;
-    message.size = sizeof message;
+    auto message = message_at<rtf_question>(here);
     message.text = to_text(question.text);
     message.choices = choices.data();
     message.choice_count = choices.size();
     message.default_answer = to_text(question.default_answer);
     message.timeout = question.timeout.count();
     message.picture = to_text(question.picture);
-    message.file = here.file;
-    message.line = here.line;
     const rtf_host &table = host_since_1_3(here, "questions");
     rtf_text answer = to_text("");
     if (table.ask(table.context, &message, &answer) != RTF_DONE) {

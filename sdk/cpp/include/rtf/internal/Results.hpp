@@ -38,15 +38,12 @@ inline void check_limits(Location here, const Measurement &measured)
 template <class Message>
 Message to_message(Location here, const Measurement &measured)
 {
-    Message message;
-    message.size = sizeof message;
+    auto message = message_at<Message>(here);
     message.name = to_text(measured.name);
     message.value = measured.value;
     message.unit = to_text(measured.unit);
     message.low = measured.low ? &*measured.low : nullptr;
     message.high = measured.high ? &*measured.high : nullptr;
-    message.file = here.file;
-    message.line = here.line;
     return message;
 }
 

@@ -4,7 +4,6 @@
 #define RTF_INTERNAL_SAMPLING_HPP
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -16,15 +15,9 @@
 namespace rtf {
 namespace internal {
 
-using Seconds = std::chrono::duration<double>;
-
 inline bool sample(Location here, const Measurement &taken, std::optional<Seconds> time)
 {
-    const rtf_host &table = host();
-    if (table.size < offsetof(rtf_host, sample) + sizeof table.sample) {
-        error(here, "this rtf is too old for samples: its plug-in interface is 1." +
-                        std::to_string(table.abi_minor));
-    }
+    const rtf_host &table = host_with(offsetof(rtf_host, sample), here, "samples");
     check_limits(here, taken);
     const double at = time ? time->count() : 0;
     if (!std::isfinite(at)) {

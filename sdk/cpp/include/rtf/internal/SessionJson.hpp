@@ -148,29 +148,13 @@ private:
 
     void append_escaped(std::string &found)
     {
+        const std::string letters = "bfnrt";
         const char kind = at_ < json_.size() ? json_[at_++] : '\0';
-        switch (kind) {
-        case 'b':
-            found += '\b';
-            break;
-        case 'f':
-            found += '\f';
-            break;
-        case 'n':
-            found += '\n';
-            break;
-        case 'r':
-            found += '\r';
-            break;
-        case 't':
-            found += '\t';
-            break;
-        case 'u':
+        const std::size_t index = letters.find(kind);
+        if (kind == 'u') {
             append_code(found, code_unit());
-            break;
-        default:
-            found += kind;
-            break;
+        } else {
+            found += index == std::string::npos ? kind : "\b\f\n\r\t"[index];
         }
     }
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <rtf/internal/Location.hpp>
 #include <rtf/internal/SessionChannel.hpp>
 #include <rtf/internal/SessionJson.hpp>
 
@@ -21,26 +22,13 @@ namespace session {
 constexpr double no_low = -std::numeric_limits<double>::infinity();
 constexpr double no_high = std::numeric_limits<double>::infinity();
 
-// As a default argument, the location of the call.
-struct Caller
-{
-    const char *file;
-    unsigned line;
-
-    static constexpr Caller current(const char *file = __builtin_FILE(),
-                                    unsigned line = __builtin_LINE())
-    {
-        return Caller{file, line};
-    }
-};
-
 struct Signal
 {
     const std::string &name;
     const std::string &unit;
     double low;
     double high;
-    Caller here;
+    Location here;
 };
 
 inline std::string packet(const std::string &method, const std::string &fields)
@@ -70,7 +58,7 @@ inline void message_with(const std::string &kind, const std::string &text, const
     } while (at < text.size());
 }
 
-inline void message(const std::string &kind, const std::string &text, Caller here)
+inline void message(const std::string &kind, const std::string &text, Location here)
 {
     if (is_open()) {
         message_with(kind, text, "," + location(here.file, here.line));
@@ -78,7 +66,7 @@ inline void message(const std::string &kind, const std::string &text, Caller her
 }
 
 // Sends a packet; if that is impossible, reports an error.
-inline bool send(const std::string &content, const std::string &name, Caller here)
+inline bool send(const std::string &content, const std::string &name, Location here)
 {
     if (content.size() > longest_packet) {
         message("error", "the report of `" + name.substr(0, 100) + "` is longer than 64 KiB", here);
@@ -149,7 +137,7 @@ inline bool sample(const Signal &signal, const std::vector<std::pair<double, dou
 }
 
 inline bool attach(const std::string &path, const std::string &name, const std::string &media_type,
-                   Caller here)
+                   Location here)
 {
     char *const resolved = realpath(path.c_str(), nullptr);
     if (resolved == nullptr) {
@@ -189,7 +177,8 @@ inline std::vector<std::pair<std::string, std::string>> parse_values(const std::
     return values;
 }
 
-inline std::string fixture_value(const std::string &name, const std::string &otherwise, Caller here)
+inline std::string fixture_value(const std::string &name, const std::string &otherwise,
+                                 Location here)
 {
     if (Channel::instance().is_forked()) {
         message("error", "a forked process cannot read values of fixtures", here);

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <string_view>
 
 #include <rtf/internal/Results.hpp>
@@ -27,20 +26,13 @@ namespace internal {
 inline void check_trajectory(Location here, std::string_view name, std::string_view reference,
                              double tolerance, Align align, std::optional<Seconds> band)
 {
-    const rtf_host &table = host();
-    if (table.size < offsetof(rtf_host, check_trajectory) + sizeof table.check_trajectory) {
-        error(here, "this rtf is too old for trajectories: its plug-in interface is 1." +
-                        std::to_string(table.abi_minor));
-    }
+    const rtf_host &table = host_with(offsetof(rtf_host, check_trajectory), here, "trajectories");
     const double seconds = band ? band->count() : 0;
-    rtf_trajectory check;
-    check.size = sizeof check;
+    auto check = message_at<rtf_trajectory>(here);
     check.name = to_text(name);
     check.reference = to_text(reference);
     check.tolerance = tolerance;
     check.band = band ? &seconds : nullptr;
-    check.file = here.file;
-    check.line = here.line;
     check.align = static_cast<std::int32_t>(align);
     table.check_trajectory(table.context, &check);
 }
