@@ -27,13 +27,9 @@ impl mlua::FromLuaMulti for Reported {
             _ => MessageKind::Error,
         };
         Ok(Self(Message {
-            kind,
-            text: text.to_string_lossy(),
-            location: location(file.as_ref(), line),
             comparison: comparison.map(|numbers| comparison_of(&numbers)).transpose()?,
             critical: critical.unwrap_or(false),
-            case: None,
-            interval: None,
+            ..Message::new(kind, text.to_string_lossy(), location(file.as_ref(), line))
         }))
     }
 }
@@ -78,14 +74,13 @@ impl mlua::FromLuaMulti for MeasureArgs {
             (LuaString, f64, LuaString, Option<f64>, Option<f64>, Option<LuaString>, Option<u32>);
         let (name, value, unit, low, high, file, line) = Arguments::from_lua_multi(values, lua)?;
         Ok(Self(Measurement {
-            learned: false,
             name: name.to_string_lossy(),
             value: finite(value),
             unit: unit.to_string_lossy(),
             low: low.and_then(finite),
             high: high.and_then(finite),
             location: location(file.as_ref(), line),
-            case: None,
+            ..Measurement::default()
         }))
     }
 }

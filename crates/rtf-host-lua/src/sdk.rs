@@ -160,9 +160,7 @@ fn attach(
         name: name.map(LuaString::to_string_lossy).or_else(own_name).unwrap_or_default(),
         path: full.to_string_lossy().into_owned(),
         media_type: media_type.map(LuaString::to_string_lossy).unwrap_or_default(),
-        case: None,
-        picture: None,
-        omitted: false,
+        ..Attachment::default()
     });
     attached.err().map(|error| format!("`{}` cannot be attached: {error}", full.display()))
 }

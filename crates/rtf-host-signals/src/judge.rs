@@ -137,14 +137,9 @@ impl MonitorReport<'_> {
         let signal = self.signal(value.signal);
         let (name, unit) = signal.map_or(("", ""), |signal| (&signal.name, &signal.unit));
         let measured = Measurement {
-            name: String::new(),
             value: Some(value.value).filter(|value| value.is_finite()),
             unit: unit.to_owned(),
-            low: None,
-            high: None,
-            learned: false,
-            location: None,
-            case: None,
+            ..Measurement::default()
         };
         format!("{name} = {}", measured.for_display().0)
     }
@@ -166,17 +161,7 @@ impl MonitorReport<'_> {
         }
         let text = format!("monitor `{name}` was not judged: the test was too short for it");
         let location = self.monitor.location.clone();
-        let (kind, comparison) = (MessageKind::Report, None);
-        let message = Message {
-            kind,
-            text,
-            location,
-            comparison,
-            critical: false,
-            case: None,
-            interval: None,
-        };
-        self.test.session.message(message);
+        self.test.session.message(Message::new(MessageKind::Report, text, location));
     }
 
     /// Reports the robustness; it must not be negative, unless the test was not judged.
@@ -184,12 +169,9 @@ impl MonitorReport<'_> {
         self.test.session.report_judged(Measurement {
             name: format!("monitor/{}", self.monitor.name),
             value: Some(robustness),
-            unit: String::new(),
             low: is_judged.then_some(0.0),
-            high: None,
-            learned: false,
             location: self.monitor.location.clone(),
-            case: None,
+            ..Measurement::default()
         });
     }
 }

@@ -302,15 +302,7 @@ fn report(found: Diagnostics, kind: MessageKind, path: &str, cases: &mut CaseRep
     if !lines.is_empty() {
         let text = lines.join("\n");
         let comparison = comparison.filter(|_| is_failure);
-        let message = Message {
-            kind,
-            text,
-            location,
-            comparison,
-            critical: false,
-            case: None,
-            interval: None,
-        };
+        let message = Message { comparison, ..Message::new(kind, text, location) };
         cases.full_message(Some(path), message);
     }
     for (key, text) in other {
@@ -334,13 +326,9 @@ fn comparison(expected: Option<&str>, actual: Option<&str>) -> Option<Comparison
 
 fn milliseconds(value: f64) -> Measurement {
     Measurement {
-        learned: false,
         name: "duration".to_owned(),
         value: Some(value),
         unit: "ms".to_owned(),
-        low: None,
-        high: None,
-        location: None,
-        case: None,
+        ..Measurement::default()
     }
 }

@@ -230,10 +230,8 @@ impl Reader {
     fn measure(&self, suffix: &str, attributes: &Attributes, cases: &mut CaseReporter<'_>) {
         let Some(case) = &self.case else { return };
         let name = format!("{}{suffix}", self.benchmark);
-        let value = attributes.get("value").parse().ok();
-        let (unit, low, high, location, case_id) = ("ns".to_owned(), None, None, None, None);
-        let measurement =
-            Measurement { learned: false, name, value, unit, low, high, location, case: case_id };
+        let (value, unit) = (attributes.get("value").parse().ok(), "ns".to_owned());
+        let measurement = Measurement { name, value, unit, ..Measurement::default() };
         cases.measure(Some(case.sections.path()), measurement);
     }
 }

@@ -140,10 +140,7 @@ impl Judge {
         let base = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let name = if name.is_empty() { base } else { name.to_owned() };
         let (path, media_type) = (file.to_string_lossy().into_owned(), media_type.to_owned());
-        cases.attach(
-            None,
-            Attachment { name, path, media_type, case: None, picture: None, omitted: false },
-        );
+        cases.attach(None, Attachment { name, path, media_type, ..Attachment::default() });
     }
 }
 

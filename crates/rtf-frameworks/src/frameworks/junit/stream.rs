@@ -166,10 +166,7 @@ impl Reader {
                 let path = self.output.join(path);
                 let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
                 let path = path.to_string_lossy().into_owned();
-                cases.attach(
-                    case,
-                    File { name, path, media_type, case: None, picture: None, omitted: false },
-                );
+                cases.attach(case, File { name, path, media_type, ..File::default() });
             }
         }
     }
@@ -263,10 +260,7 @@ impl ReportReader for Reader {
             self.crash = crash(&text);
             let (name, media_type) = ("hs_err.log".to_owned(), "text/plain".to_owned());
             let path = log.to_string_lossy().into_owned();
-            cases.attach(
-                None,
-                File { name, path, media_type, case: None, picture: None, omitted: false },
-            );
+            cases.attach(None, File { name, path, media_type, ..File::default() });
         }
         let has_exited = matches!(end, ExitStatus::Code(_)) && cases.innermost().is_none();
         let is_complete = self.events.is_complete();
