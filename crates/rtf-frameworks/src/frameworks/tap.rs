@@ -9,15 +9,12 @@ mod parser;
 mod perl;
 
 use std::collections::HashMap;
-use std::process::Command;
 
 use rtf_model::{Comparison, ExitStatus, Location, Measurement, Message, MessageKind, Outcome};
 
-use crate::case::{CaseResult, ListedCase, StartedCase};
+use crate::case::{CaseResult, StartedCase};
 use crate::case_reporter::CaseReporter;
-use crate::framework::{
-    Framework, Garbage, Launch, ListError, ReportChannel, ReportReader, TestProgram,
-};
+use crate::framework::{Framework, Garbage, Launch, ReportChannel, ReportReader};
 use crate::last_output::OutputStream;
 use diagnostics::Diagnostics;
 use line::Directive;
@@ -37,20 +34,12 @@ const ERROR_LINE_BYTES: usize = 4096;
 pub struct Tap;
 
 impl Framework for Tap {
-    fn list(&self, _test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
-        Ok(None)
-    }
-
     fn channel(&self) -> ReportChannel {
         ReportChannel::Stdout
     }
 
     fn watches_output(&self, _launch: &Launch<'_>) -> bool {
         true
-    }
-
-    fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
-        Ok(launch.test.command())
     }
 
     fn reader(&self, launch: &Launch<'_>) -> Box<dyn ReportReader> {

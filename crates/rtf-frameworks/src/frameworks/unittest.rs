@@ -4,9 +4,7 @@
 use std::process::Command;
 
 use crate::case::ListedCase;
-use crate::framework::{
-    Framework, Launch, ListError, NoReport, ReportChannel, ReportReader, StackDump, TestProgram,
-};
+use crate::framework::{Framework, Launch, ListError, StackDump, TestProgram};
 
 use super::python;
 
@@ -24,16 +22,8 @@ impl Framework for Unittest {
         Ok(None)
     }
 
-    fn channel(&self) -> ReportChannel {
-        ReportChannel::None
-    }
-
     fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
         Ok(command(launch.test))
-    }
-
-    fn reader(&self, _launch: &Launch<'_>) -> Box<dyn ReportReader> {
-        Box::new(NoReport)
     }
 
     fn announces_end(&self) -> bool {

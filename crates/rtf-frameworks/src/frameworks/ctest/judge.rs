@@ -145,10 +145,6 @@ impl Judge {
 }
 
 impl ReportReader for Judge {
-    fn report(&mut self, _bytes: &[u8], _cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
-        Ok(())
-    }
-
     fn output(&mut self, _stream: OutputStream, bytes: &[u8], _cases: &mut CaseReporter<'_>) {
         let room = OUTPUT_BYTES.saturating_sub(self.output.len());
         self.is_cut |= bytes.len() > room;
