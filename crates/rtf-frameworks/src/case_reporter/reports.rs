@@ -98,7 +98,7 @@ impl CaseReporter<'_> {
                 Some(open.case)
             }
             None => {
-                self.has_problem |= is_problem;
+                self.process.has_problem |= is_problem;
                 None
             }
         }

@@ -77,7 +77,7 @@ pub(super) fn unique_names(cases: &mut [ListedCase]) {
 }
 
 /// The cases that a process runs, for finding them by their name and location.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct RunningCases(Vec<ListedCase>);
 
 impl RunningCases {

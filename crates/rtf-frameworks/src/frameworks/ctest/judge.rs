@@ -23,6 +23,7 @@ const QUOTED_LINES: usize = 10;
 const QUOTED_CHARS: usize = 300;
 
 /// Reads the output of a test, and judges the test at its end.
+#[derive(Default)]
 pub struct Judge {
     test: CTestCase,
     output: Vec<u8>,
@@ -41,7 +42,7 @@ enum Judgement {
 
 impl Judge {
     pub fn new(test: CTestCase) -> Self {
-        Self { test, output: Vec::new(), is_cut: false, matched: None }
+        Self { test, ..Self::default() }
     }
 
     /// `ctest` reads lines, and ends the last one.

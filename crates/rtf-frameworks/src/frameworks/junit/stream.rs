@@ -25,7 +25,7 @@ struct Element {
 }
 
 /// Reads the events of one process.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Reader {
     events: TestEvents,
     elements: HashMap<String, Element>,
@@ -108,14 +108,10 @@ impl Reader {
     pub fn new(cases: &[ListedCase], classes: &Path, output: &Path) -> Self {
         let selected = cases.iter().filter_map(|case| Some((case.id.clone()?, case.start())));
         Self {
-            events: TestEvents::default(),
-            elements: HashMap::new(),
             selected: selected.collect(),
-            names: Names::default(),
             classes: classes.to_owned(),
             output: output.to_owned(),
-            has_events: false,
-            crash: None,
+            ..Self::default()
         }
     }
 
