@@ -14,6 +14,7 @@ use rtf_model::{CaseId, CaseStart, MessageKind, Outcome};
 
 use crate::case::{CaseResult, Retry, StartedCase};
 use crate::wanted::WantedCases;
+use process::PresentProcess;
 
 /// How many names a message lists.
 const NAMES_SHOWN: usize = 5;
@@ -39,8 +40,6 @@ pub struct CaseReporter<'a> {
     open: Vec<OpenCase>,
     /// Top-level cases that have finished: whether without a problem.
     results: HashMap<String, bool>,
-    /// Those that finished in the present process, which may repeat them.
-    finished_here: HashSet<String>,
     /// After which results the supervisor runs a top-level case again.
     retry: Option<Retry>,
     skipped: usize,
@@ -48,24 +47,12 @@ pub struct CaseReporter<'a> {
     expected: Option<HashSet<String>>,
     /// The cases that the runner wants, if the program announces its cases itself.
     wanted: Option<WantedCases>,
-    /// Whether cases that the present process announces are new: later ones run the rest.
-    is_first_process: bool,
-    /// The top-level cases that the present process runs; `None` if all.
-    selection: Option<HashSet<String>>,
-    /// Whether the present process reported a problem.
-    has_problem: bool,
-    /// Whether the present process announced that it has reported everything.
-    is_complete: bool,
-    /// How many top-level cases finished in the present process.
-    finished: usize,
-    last_finished: Option<String>,
+    process: PresentProcess,
     /// The path of the open case in which the program is, if it is not the innermost one.
     current: Option<String>,
     /// Whether the program skipped itself.
     is_skipped: bool,
-    /// Whether the present process runs one case only: what it leaves behind is left by this
-    /// case, whose end is held back until the process has ended.
-    has_only_case: bool,
+    /// The end of the only case of a process, which is held back until the process has ended.
     held_end: Option<(CaseId, Notification)>,
 }
 
@@ -77,20 +64,13 @@ impl<'a> CaseReporter<'a> {
             started: 0,
             open: Vec::new(),
             results: HashMap::new(),
-            finished_here: HashSet::new(),
             retry: None,
             skipped: 0,
             expected: None,
             wanted: None,
-            is_first_process: true,
-            selection: None,
-            has_problem: false,
-            is_complete: false,
-            finished: 0,
-            last_finished: None,
+            process: PresentProcess::default(),
             current: None,
             is_skipped: false,
-            has_only_case: false,
             held_end: None,
         }
     }
@@ -112,7 +92,7 @@ impl<'a> CaseReporter<'a> {
     /// The program announces top-level cases. Returns for each one whether it runs in the
     /// present process.
     pub fn announce(&mut self, names: Vec<String>) -> Vec<bool> {
-        if self.is_first_process {
+        if !self.process.is_later {
             let wanted = names.iter().filter(|name| self.is_wanted(name)).cloned();
             let wanted: Vec<String> = wanted.collect();
             self.plan(wanted);
@@ -125,8 +105,8 @@ impl<'a> CaseReporter<'a> {
     #[must_use]
     pub fn runs(&self, name: &str) -> bool {
         self.is_wanted(name)
-            && (!self.results.contains_key(name) || self.finished_here.contains(name))
-            && self.selection.as_ref().is_none_or(|selection| selection.contains(name))
+            && (!self.results.contains_key(name) || self.process.finished.contains(name))
+            && self.process.selection.as_ref().is_none_or(|selection| selection.contains(name))
     }
 
     fn is_wanted(&self, name: &str) -> bool {
@@ -212,7 +192,7 @@ impl<'a> CaseReporter<'a> {
         let open = self.open.remove(index);
         self.current = None;
         let CaseResult { outcome, reason, duration, rerun } = result;
-        let is_held = self.has_only_case && open.parent.is_none();
+        let is_held = self.process.has_only_case && open.parent.is_none();
         let duration = duration.or_else(|| is_held.then(|| open.started.elapsed()));
         let duration_us = duration.map(|it| u64::try_from(it.as_micros()).unwrap_or(u64::MAX));
         let is_bad = outcome.is_some_and(|it| !matches!(it, Outcome::Passed | Outcome::Skipped));
@@ -220,15 +200,15 @@ impl<'a> CaseReporter<'a> {
         let is_retried = self.retry.is_some_and(|retry| retry.follows(outcome, has_problem));
         let rerun = (rerun || is_retried) && open.parent.is_none();
         // The next attempt decides.
-        self.has_problem |= has_problem && !rerun;
+        self.process.has_problem |= has_problem && !rerun;
         if let Some(parent) = open.parent {
             let mut others = self.open.iter_mut();
             if let Some(parent) = others.find(|other| other.case == parent) {
                 parent.has_problem |= has_problem;
             }
         } else {
-            self.finished += 1;
-            self.last_finished = Some(open.path.clone());
+            self.process.count += 1;
+            self.process.last_finished = Some(open.path.clone());
             if !rerun {
                 let is_skipped = outcome == Some(Outcome::Skipped) && !has_problem;
                 self.record_result(open.path, !has_problem, is_skipped);
@@ -259,7 +239,7 @@ impl<'a> CaseReporter<'a> {
 
     /// A top-level case has finished, perhaps for a second time.
     fn record_result(&mut self, name: String, has_passed: bool, is_skipped: bool) {
-        self.finished_here.insert(name.clone());
+        self.process.finished.insert(name.clone());
         match self.results.entry(name) {
             Entry::Occupied(mut before) => *before.get_mut() &= has_passed,
             Entry::Vacant(place) => {

@@ -28,7 +28,7 @@ pub fn check(framework: &dyn Framework, args: &[OsString]) -> std::io::Result<()
     };
     let files: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
     let args: Vec<String> = args.iter().map(|arg| arg.to_string_lossy().into_owned()).collect();
-    rtf_host::check_each(&files, |file| list(framework, file, &args))
+    rtf_host::check(&files, |file| list(framework, file, &args))
 }
 
 fn list(framework: &dyn Framework, file: &Path, args: &[String]) -> Listing {

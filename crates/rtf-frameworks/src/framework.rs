@@ -110,7 +110,9 @@ pub trait Framework {
     ///
     /// # Errors
     /// The program cannot be started, or is no test of this framework.
-    fn list(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError>;
+    fn list(&self, _test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
+        Ok(None)
+    }
 
     /// Lists the cases for a run. Some frameworks announce them while they run.
     ///
@@ -120,7 +122,9 @@ pub trait Framework {
         self.list(test)
     }
 
-    fn channel(&self) -> ReportChannel;
+    fn channel(&self) -> ReportChannel {
+        ReportChannel::None
+    }
 
     /// Whether [`ReportReader::output`] needs the program's output.
     fn watches_output(&self, _launch: &Launch<'_>) -> bool {
@@ -138,10 +142,14 @@ pub trait Framework {
     ///
     /// # Errors
     /// The command cannot be made, with the reason.
-    fn command(&self, launch: &Launch<'_>) -> Result<Command, String>;
+    fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
+        Ok(launch.test.command())
+    }
 
     /// A reader for the report of one process. Called after [`Self::command`].
-    fn reader(&self, launch: &Launch<'_>) -> Box<dyn ReportReader>;
+    fn reader(&self, _launch: &Launch<'_>) -> Box<dyn ReportReader> {
+        Box::new(NoReport)
+    }
 
     /// Whether a run of all cases neither runs nor reports the disabled ones.
     fn omits_disabled(&self) -> bool {
@@ -212,7 +220,9 @@ pub trait ReportReader {
     ///
     /// # Errors
     /// They are not part of a report; no further ones are read.
-    fn report(&mut self, bytes: &[u8], cases: &mut CaseReporter<'_>) -> Result<(), Garbage>;
+    fn report(&mut self, _bytes: &[u8], _cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
+        Ok(())
+    }
 
     /// Reads output that the program wrote, which is passed on in any case.
     fn output(&mut self, _stream: OutputStream, _bytes: &[u8], _cases: &mut CaseReporter<'_>) {}
@@ -246,10 +256,6 @@ pub trait ReportReader {
 pub struct NoReport;
 
 impl ReportReader for NoReport {
-    fn report(&mut self, _bytes: &[u8], _cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
-        Ok(())
-    }
-
     fn finish(&mut self, _end: ExitStatus, _cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
         Ok(())
     }

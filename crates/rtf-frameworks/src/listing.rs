@@ -16,6 +16,9 @@ use rustix::process::{Pid, Signal, kill_process_group};
 use crate::framework::ListError;
 use crate::own_child;
 
+/// The limit of most programs that list their cases.
+pub const LIST_LIMIT: Duration = Duration::from_secs(60);
+
 /// The longest part of the output that an error quotes.
 const QUOTED_BYTES: usize = 2000;
 
@@ -37,6 +40,39 @@ impl Listed {
         let start = text.len().saturating_sub(QUOTED_BYTES);
         String::from_utf8_lossy(text[start..].trim_ascii()).into_owned()
     }
+
+    /// An error about the program, with the end of its output.
+    #[must_use]
+    pub fn error(&self, message: String) -> ListError {
+        let quote = self.quote();
+        ListError::new(match quote.is_empty() {
+            true => message,
+            false => format!("{message}\nit printed\n{quote}"),
+        })
+    }
+
+    /// The error about a program that listed nothing with these options of a framework.
+    #[must_use]
+    pub fn not_of(&self, framework: &str, file: &Path, options: &str) -> ListError {
+        let (name, status) = (file_name(file), self.status);
+        self.error(format!(
+            "`{name}` is no {framework} program: `{options}` lists nothing ({status})"
+        ))
+    }
+}
+
+/// Runs a command that writes its list to a file, whose path is passed to `command`. Returns also
+/// the contents of the file, if there is one.
+///
+/// # Errors
+/// There can be no file; as for [`run`].
+pub fn run_with_file(
+    command: impl FnOnce(&Path) -> Command,
+) -> Result<(Vec<u8>, Listed), ListError> {
+    let dir = tempfile::tempdir().map_err(|error| ListError::new(error.to_string()))?;
+    let file = dir.path().join("list");
+    let listed = run(command(&file), LIST_LIMIT)?;
+    Ok((std::fs::read(&file).unwrap_or_default(), listed))
 }
 
 /// Runs a command to its end, in a new process group, which is killed after the limit and
@@ -146,7 +182,7 @@ pub fn reserved<'a>(args: &'a [String], reserved: &[&str]) -> Option<&'a str> {
 
 /// A file name, for messages.
 #[must_use]
-pub fn file_name(file: &std::path::Path) -> String {
+pub fn file_name(file: &Path) -> String {
     file.file_name().unwrap_or(OsStr::new("?")).to_string_lossy().into_owned()
 }
 

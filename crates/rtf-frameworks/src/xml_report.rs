@@ -4,7 +4,7 @@ use crate::framework::Garbage;
 use crate::xml_stream::{XmlEvent, XmlStream};
 
 /// Reads a report while the program writes it.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct XmlReport {
     root: &'static str,
     stream: XmlStream,
@@ -15,7 +15,7 @@ impl XmlReport {
     /// A report whose document is this element.
     #[must_use]
     pub fn new(root: &'static str) -> Self {
-        Self { root, stream: XmlStream::default(), has_begun: false }
+        Self { root, ..Self::default() }
     }
 
     /// The events of a whole report; `None` if it is not complete, or not of this element.

@@ -22,8 +22,6 @@ const BLOCK: u64 = 4096;
 /// What stays free on the file system of the results.
 const RESERVE: u64 = 64 * MIB;
 
-pub(crate) type Memory = Vec<Vec<u8>>;
-
 /// Makes the system end this process first when memory runs out.
 pub(crate) fn be_first_victim() {
     // A process may always raise its own value.
@@ -31,7 +29,10 @@ pub(crate) fn be_first_victim() {
 }
 
 /// Allocates memory and writes to it, until `is_cancelled`.
-pub(crate) fn memory(amount: FaultAmount, is_cancelled: &AtomicBool) -> Result<Memory, String> {
+pub(crate) fn memory(
+    amount: FaultAmount,
+    is_cancelled: &AtomicBool,
+) -> Result<Vec<Vec<u8>>, String> {
     let available = available_memory().ok_or("`/proc/meminfo` does not show the free memory")?;
     let size = size_of(amount, available, "memory")?;
     let pattern = vec![0xa5; MIB as usize];

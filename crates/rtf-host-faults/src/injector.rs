@@ -102,17 +102,8 @@ impl Injector {
                 "fault `{}` was not injected: the test ended before {at:.3} s",
                 config.name
             );
-            let (kind, location) = (MessageKind::Report, Some(config.location.clone()));
-            let message = Message {
-                kind,
-                text,
-                location,
-                comparison: None,
-                critical: false,
-                case: None,
-                interval: None,
-            };
-            self.session.message(message);
+            let location = Some(config.location.clone());
+            self.session.message(Message::new(MessageKind::Report, text, location));
         }
     }
 

@@ -1,6 +1,6 @@
 //! The effect of a fault, from its injection to its removal.
 
-use std::fs::File;
+use std::fmt::Debug;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -8,11 +8,11 @@ use std::time::{Duration, Instant};
 use rtf_statistics::RandomStream;
 use rustix::process::Signal;
 
-use crate::fill::{self, Memory};
+use crate::fill;
 use crate::impairment::Impairment;
-use crate::network::{self, Impaired};
+use crate::network;
 use crate::pauses::{self, Pauses};
-use crate::proxy::{self, ChangedValues};
+use crate::proxy;
 use crate::settings::EffectSettings;
 use crate::targets::{Target, Targets};
 
@@ -27,17 +27,9 @@ pub(crate) enum Effect {
     /// Of a fault that does not last.
     None,
     Paused(PausedProcesses),
-    Memory {
-        _pieces: Memory,
-    },
-    Disk {
-        _file: File,
-    },
-    Network {
-        _impaired: Impaired,
-    },
-    Values {
-        _changed: ChangedValues,
+    Held {
+        /// The effect ends when it is dropped.
+        _value: Box<dyn Debug + Send>,
     },
 }
 
@@ -67,40 +59,40 @@ pub(crate) fn begin(
             let pieces = fill::memory(*amount, is_cancelled)?;
             let size = pieces.iter().map(|piece| piece.len() as u64).sum();
             let done = format!("filled {} of memory", fill::text_of(size));
-            Ok((Effect::Memory { _pieces: pieces }, done))
+            Ok((Effect::held(pieces), done))
         }
         EffectSettings::Network { fault, port, seed } => {
             let random = RandomStream::new(u64::from(*seed), "fault", "network");
             let impaired = network::impair(Impairment::new(*fault, *port, random))?;
             let port = port.map_or(String::new(), |port| format!(" of port {port}"));
             let done = format!("impaired the packets{port}: {fault}");
-            Ok((Effect::Network { _impaired: impaired }, done))
+            Ok((Effect::held(impaired), done))
         }
         EffectSettings::Values { fixture, socket, fault } => {
             let changed = proxy::change(socket, fault)?;
             let field = fault.field.as_ref().map_or("messages".to_owned(), |it| format!("`{it}`"));
             let done = format!("changed {field} of `{fixture}`: {fault}");
-            Ok((Effect::Values { _changed: changed }, done))
+            Ok((Effect::held(changed), done))
         }
         EffectSettings::Disk { dir, amount } => {
             let file = fill::disk(dir, *amount, is_cancelled)?;
             let size = file.metadata().map_or(0, |metadata| metadata.len());
             let done = format!("filled {} of `{}`", fill::text_of(size), dir.display());
-            Ok((Effect::Disk { _file: file }, done))
+            Ok((Effect::held(file), done))
         }
     }
 }
 
 impl Effect {
+    fn held(value: impl Debug + Send + 'static) -> Self {
+        Self::Held { _value: Box::new(value) }
+    }
+
     /// What is due now; returns when it has to be called again.
     pub fn advance(&mut self, now: Instant, pauses: &mut Pauses) -> Option<Instant> {
         match self {
             Self::Paused(paused) => Some(paused.advance(now, pauses)),
-            Self::None
-            | Self::Memory { .. }
-            | Self::Disk { .. }
-            | Self::Network { .. }
-            | Self::Values { .. } => None,
+            Self::None | Self::Held { .. } => None,
         }
     }
 

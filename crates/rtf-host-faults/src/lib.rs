@@ -28,16 +28,10 @@ mod settings;
 mod targets;
 mod unix;
 
-use std::path::Path;
+use rtf_host::{HostProgram, Session, added_fixture, serve};
 
-use rtf_host::{CheckedFile, HostProgram, Session, serve};
-
-/// The program. It has no plug-ins: `--check` accepts every file.
-pub const PROGRAM: HostProgram<()> = HostProgram { check, prepare: || (), serve: serve_faults };
-
-fn check(file: &Path) -> CheckedFile {
-    CheckedFile::good(file, None)
-}
+pub const PROGRAM: HostProgram<()> =
+    HostProgram { check: added_fixture::check, prepare: || (), serve: serve_faults };
 
 fn serve_faults(session: &Session, (): ()) -> std::io::Result<()> {
     serve(session, host::FaultsHost::new(session.clone()))

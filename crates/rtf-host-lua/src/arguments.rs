@@ -12,56 +12,46 @@ use rtf_model::{
 const LONGEST: Duration = Duration::from_secs(1 << 40);
 
 /// `kind, text, file, line, comparison, critical`
-pub(crate) struct Reported(pub(crate) Message);
+pub(crate) type MessageArgs =
+    (String, LuaString, Option<LuaString>, Option<u32>, Option<Table>, Option<bool>);
 
-impl mlua::FromLuaMulti for Reported {
-    fn from_lua_multi(values: mlua::MultiValue, lua: &Lua) -> mlua::Result<Self> {
-        type Arguments =
-            (String, LuaString, Option<LuaString>, Option<u32>, Option<Table>, Option<bool>);
-        let (kind, text, file, line, comparison, critical) =
-            Arguments::from_lua_multi(values, lua)?;
-        let kind = match kind.as_str() {
-            "report" => MessageKind::Report,
-            "check" => MessageKind::Check,
-            "failure" => MessageKind::Failure,
-            _ => MessageKind::Error,
-        };
-        Ok(Self(Message {
-            kind,
-            text: text.to_string_lossy(),
-            location: location(file.as_ref(), line),
-            comparison: comparison.map(|numbers| comparison_of(&numbers)).transpose()?,
-            critical: critical.unwrap_or(false),
-            case: None,
-            interval: None,
-        }))
-    }
+pub(crate) fn message(
+    (kind, text, file, line, comparison, critical): MessageArgs,
+) -> mlua::Result<Message> {
+    let kind = match kind.as_str() {
+        "report" => MessageKind::Report,
+        "check" => MessageKind::Check,
+        "failure" => MessageKind::Failure,
+        _ => MessageKind::Error,
+    };
+    Ok(Message {
+        comparison: comparison.map(|numbers| comparison_of(&numbers)).transpose()?,
+        critical: critical.unwrap_or(false),
+        ..Message::new(kind, text.to_string_lossy(), location(file.as_ref(), line))
+    })
 }
 
 /// `text, choices, timeout, default, picture, file, line`
-pub(crate) struct Asked(pub(crate) Inquiry);
+pub(crate) type QuestionArgs = (
+    LuaString,
+    Vec<LuaString>,
+    f64,
+    Option<LuaString>,
+    Option<LuaString>,
+    Option<LuaString>,
+    Option<u32>,
+);
 
-impl mlua::FromLuaMulti for Asked {
-    fn from_lua_multi(values: mlua::MultiValue, lua: &Lua) -> mlua::Result<Self> {
-        type Arguments = (
-            LuaString,
-            Vec<LuaString>,
-            f64,
-            Option<LuaString>,
-            Option<LuaString>,
-            Option<LuaString>,
-            Option<u32>,
-        );
-        let (text, choices, timeout, default, picture, file, line) =
-            Arguments::from_lua_multi(values, lua)?;
-        Ok(Self(Inquiry {
-            text: text.to_string_lossy(),
-            choices: choices.iter().map(LuaString::to_string_lossy).collect(),
-            default: default.as_ref().map(LuaString::to_string_lossy),
-            timeout: duration(timeout),
-            picture: picture.as_ref().map(LuaString::to_string_lossy),
-            location: location(file.as_ref(), line),
-        }))
+pub(crate) fn inquiry(
+    (text, choices, timeout, default, picture, file, line): QuestionArgs,
+) -> Inquiry {
+    Inquiry {
+        text: text.to_string_lossy(),
+        choices: choices.iter().map(LuaString::to_string_lossy).collect(),
+        default: default.as_ref().map(LuaString::to_string_lossy),
+        timeout: duration(timeout),
+        picture: picture.as_ref().map(LuaString::to_string_lossy),
+        location: location(file.as_ref(), line),
     }
 }
 
@@ -70,67 +60,48 @@ pub(crate) fn duration(seconds: f64) -> Duration {
 }
 
 /// `name, value, unit, low, high, file, line`
-pub(crate) struct MeasureArgs(pub(crate) Measurement);
+pub(crate) type MeasureArgs =
+    (LuaString, f64, LuaString, Option<f64>, Option<f64>, Option<LuaString>, Option<u32>);
 
-impl mlua::FromLuaMulti for MeasureArgs {
-    fn from_lua_multi(values: mlua::MultiValue, lua: &Lua) -> mlua::Result<Self> {
-        type Arguments =
-            (LuaString, f64, LuaString, Option<f64>, Option<f64>, Option<LuaString>, Option<u32>);
-        let (name, value, unit, low, high, file, line) = Arguments::from_lua_multi(values, lua)?;
-        Ok(Self(Measurement {
-            learned: false,
-            name: name.to_string_lossy(),
-            value: finite(value),
-            unit: unit.to_string_lossy(),
-            low: low.and_then(finite),
-            high: high.and_then(finite),
-            location: location(file.as_ref(), line),
-            case: None,
-        }))
+pub(crate) fn measurement((name, value, unit, low, high, file, line): MeasureArgs) -> Measurement {
+    Measurement {
+        name: name.to_string_lossy(),
+        value: finite(value),
+        unit: unit.to_string_lossy(),
+        low: low.and_then(finite),
+        high: high.and_then(finite),
+        location: location(file.as_ref(), line),
+        ..Measurement::default()
     }
 }
 
 /// `name, value, unit, low, high, time, file, line`
-pub(crate) struct Sampled {
-    name: LuaString,
-    numbers: (f64, Option<f64>, Option<f64>, Option<f64>),
-    unit: LuaString,
-    place: (Option<LuaString>, Option<u32>),
-}
+pub(crate) type SampleArgs = (
+    LuaString,
+    f64,
+    LuaString,
+    Option<f64>,
+    Option<f64>,
+    Option<f64>,
+    Option<LuaString>,
+    Option<u32>,
+);
 
-impl mlua::FromLuaMulti for Sampled {
-    fn from_lua_multi(values: mlua::MultiValue, lua: &Lua) -> mlua::Result<Self> {
-        type Arguments = (
-            LuaString,
-            f64,
-            LuaString,
-            Option<f64>,
-            Option<f64>,
-            Option<f64>,
-            Option<LuaString>,
-            Option<u32>,
-        );
-        let (name, value, unit, low, high, time, file, line) =
-            Arguments::from_lua_multi(values, lua)?;
-        Ok(Self { name, numbers: (value, low, high, time), unit, place: (file, line) })
-    }
-}
-
-impl Sampled {
-    /// Takes the sample; returns whether it is within its limits.
-    pub(crate) fn send(&self, session: &Session) -> bool {
-        let (value, low, high, time) = self.numbers;
-        let file = self.place.0.as_ref().map(LuaString::to_string_lossy);
-        session.sample(&Sample {
-            name: &self.name.to_string_lossy(),
-            value,
-            unit: &self.unit.to_string_lossy(),
-            low: low.and_then(finite),
-            high: high.and_then(finite),
-            time,
-            place: file.as_deref().map(|file| (file, self.place.1.unwrap_or(0))),
-        })
-    }
+/// Takes a sample; returns whether it is within its limits.
+pub(crate) fn sample(
+    session: &Session,
+    (name, value, unit, low, high, time, file, line): SampleArgs,
+) -> bool {
+    let file = file.as_ref().map(LuaString::to_string_lossy);
+    session.sample(&Sample {
+        name: &name.to_string_lossy(),
+        value,
+        unit: &unit.to_string_lossy(),
+        low: low.and_then(finite),
+        high: high.and_then(finite),
+        time,
+        place: file.as_deref().map(|file| (file, line.unwrap_or(0))),
+    })
 }
 
 /// A check of a trajectory: name, reference, tolerance, alignment, band, place.

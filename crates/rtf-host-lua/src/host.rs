@@ -5,6 +5,7 @@ use std::path::Path;
 use mlua::{Function, IntoLua, Lua, MultiValue, Table, Value};
 use rtf_host::{
     HostPlugin, LoadError, PluginKind, Reaction, Session, Step, StepEnd, TestNotification,
+    flush_output,
 };
 use rtf_model::Location;
 use rtf_model::protocol::{
@@ -95,7 +96,7 @@ impl HostPlugin for LuaHost {
         let end =
             loaded.step(step).unwrap_or_else(|error| StepEnd::Broken(error.to_string(), None));
         // The output belongs before the answer.
-        interruption::flush_output();
+        flush_output();
         end
     }
 
@@ -114,7 +115,7 @@ impl HostPlugin for LuaHost {
         let end = loaded
             .notify(notification)
             .unwrap_or_else(|error| StepEnd::Broken(error.to_string(), None));
-        interruption::flush_output();
+        flush_output();
         end
     }
 

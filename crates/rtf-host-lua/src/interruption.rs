@@ -74,12 +74,6 @@ pub(crate) fn request_stack() {
     interrupt_lua();
 }
 
-/// Flushes C's streams, to which Lua prints.
-pub(crate) fn flush_output() {
-    // SAFETY: null means all output streams; they are locked while written.
-    unsafe { libc::fflush(ptr::null_mut()) };
-}
-
 /// The version of the embedded Lua: `5.4.9`.
 pub(crate) fn lua_release() -> String {
     // SAFETY: Lua defines it as an array of characters that ends with a zero.

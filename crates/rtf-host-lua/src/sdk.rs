@@ -9,7 +9,10 @@ use rtf_host::Session;
 use rtf_model::protocol::{MonitorDeclaration, Plugin};
 use rtf_model::{Attachment, PictureCheck};
 
-use crate::arguments::{Asked, MeasureArgs, Reported, Sampled, Trajectory, duration, location};
+use crate::arguments::{
+    MeasureArgs, MessageArgs, QuestionArgs, SampleArgs, Trajectory, duration, inquiry, location,
+    measurement, message, sample,
+};
 use crate::cases;
 use crate::chunk::SdkChunk;
 use crate::clock::Clock;
@@ -103,32 +106,30 @@ fn functions(lua: &Lua) -> mlua::Result<Table> {
     let is_simulated = clock.is_simulated();
     host.set("seconds", lua.create_function(move |_, ()| Ok(clock.seconds()))?)?;
     host.set("is_simulated", lua.create_function(move |_, ()| Ok(is_simulated))?)?;
-    add(lua, &host, "message", |session, message: Reported| {
-        session.message(message.0);
+    add(lua, &host, "message", |session, args: MessageArgs| {
+        session.message(message(args)?);
         Ok(())
     })?;
-    add(lua, &host, "measure", |session, measured: MeasureArgs| Ok(session.measure(measured.0)))?;
-    add(lua, &host, "sample", |session, sampled: Sampled| Ok(sampled.send(session)))?;
+    add(
+        lua,
+        &host,
+        "measure",
+        |session, args: MeasureArgs| Ok(session.measure(measurement(args))),
+    )?;
+    add(lua, &host, "sample", |session, args: SampleArgs| Ok(sample(session, args)))?;
     add(lua, &host, "trajectory", |session, checked: Trajectory| {
         session.check_trajectory(checked.0);
         Ok(())
     })?;
     add(lua, &host, "picture", |session, check: PictureArgs| Ok(check_picture(session, check)))?;
     add(lua, &host, "monitor", |session, declared: MonitorArgs| Ok(monitor(session, &declared)))?;
-    add(
-        lua,
-        &host,
-        "attach",
-        |session, file: (LuaString, Option<LuaString>, Option<LuaString>)| {
-            Ok(attach(session, &file.0, file.1.as_ref(), file.2.as_ref()))
-        },
-    )?;
+    add(lua, &host, "attach", |session, file: AttachArgs| Ok(attach(session, file)))?;
     add(lua, &host, "collapsed", |session, reason: LuaString| {
         session.collapsed(&reason.to_string_lossy());
         Ok(())
     })?;
     add(lua, &host, "wait", |session, seconds: f64| Ok(session.wait(duration(seconds))))?;
-    add(lua, &host, "ask", |session, asked: Asked| Ok(session.ask(asked.0)))?;
+    add(lua, &host, "ask", |session, args: QuestionArgs| Ok(session.ask(inquiry(args))))?;
     faults::add_functions(lua, &host)?;
     cases::add_functions(lua, &host)?;
     fixture_values::add_functions(lua, &host)?;
@@ -144,27 +145,34 @@ fn existing(path: &LuaString) -> Result<PathBuf, String> {
     is_there.then(|| full.clone()).ok_or(format!("there is no file `{}` to attach", full.display()))
 }
 
-/// Attaches a file; returns the problem, if there is one.
-fn attach(
-    session: &Session,
+/// Sends a file with its absolute path; returns the problem, if there is one.
+fn send_file(
     path: &LuaString,
-    name: Option<&LuaString>,
-    media_type: Option<&LuaString>,
+    send: impl FnOnce(PathBuf) -> std::io::Result<()>,
 ) -> Option<String> {
     let full = match existing(path) {
         Ok(full) => full,
         Err(problem) => return Some(problem),
     };
-    let own_name = || full.file_name().map(|name| name.to_string_lossy().into_owned());
-    let attached = session.attach(Attachment {
-        name: name.map(LuaString::to_string_lossy).or_else(own_name).unwrap_or_default(),
-        path: full.to_string_lossy().into_owned(),
-        media_type: media_type.map(LuaString::to_string_lossy).unwrap_or_default(),
-        case: None,
-        picture: None,
-        omitted: false,
-    });
-    attached.err().map(|error| format!("`{}` cannot be attached: {error}", full.display()))
+    let sent = send(full.clone());
+    sent.err().map(|error| format!("`{}` cannot be attached: {error}", full.display()))
+}
+
+/// `path, name, media_type`
+type AttachArgs = (LuaString, Option<LuaString>, Option<LuaString>);
+
+/// Attaches a file; returns the problem, if there is one.
+fn attach(session: &Session, (path, name, media_type): AttachArgs) -> Option<String> {
+    let text = |text: LuaString| text.to_string_lossy();
+    send_file(&path, |full| {
+        let own_name = || full.file_name().map(|name| name.to_string_lossy().into_owned());
+        session.attach(Attachment {
+            name: name.map(text).or_else(own_name).unwrap_or_default(),
+            path: full.to_string_lossy().into_owned(),
+            media_type: media_type.map(text).unwrap_or_default(),
+            ..Attachment::default()
+        })
+    })
 }
 
 /// `name, picture, reference, tolerance, file, line`
@@ -175,15 +183,12 @@ fn check_picture(
     session: &Session,
     (name, picture, reference, tolerance, file, line): PictureArgs,
 ) -> Option<String> {
-    let full = match existing(&picture) {
-        Ok(full) => full,
-        Err(problem) => return Some(problem),
-    };
     let reference = reference.to_string_lossy();
     let check = PictureCheck { reference, tolerance, location: location(file.as_ref(), line) };
-    let path = full.to_string_lossy().into_owned();
-    let attached = session.check_picture((name.to_string_lossy(), path), check);
-    attached.err().map(|error| format!("`{}` cannot be attached: {error}", full.display()))
+    send_file(&picture, |full| {
+        let path = full.to_string_lossy().into_owned();
+        session.check_picture((name.to_string_lossy(), path), check)
+    })
 }
 
 /// `formula, name, severity, file, line`

@@ -99,13 +99,9 @@ unsafe extern "C" fn message(context: *mut c_void, message: *const rtf_message) 
             _ => MessageKind::Error,
         };
         self::context(context).session.message(Message {
-            kind,
-            text: text(message.text),
-            location: location(message.file, message.line),
             comparison: message.comparison.as_ref().map(|numbers| comparison(numbers)),
             critical: message.critical != 0,
-            case: None,
-            interval: None,
+            ..Message::new(kind, text(message.text), location(message.file, message.line))
         });
     }
 }
@@ -115,14 +111,13 @@ unsafe extern "C" fn measure(context: *mut c_void, measurement: *const rtf_measu
     unsafe {
         let measurement = &*measurement;
         let holds = self::context(context).session.measure(Measurement {
-            learned: false,
             name: text(measurement.name),
             value: finite(measurement.value),
             unit: text(measurement.unit),
             low: measurement.low.as_ref().copied().filter(|low| *low != f64::NEG_INFINITY),
             high: measurement.high.as_ref().copied().filter(|high| *high != f64::INFINITY),
             location: location(measurement.file, measurement.line),
-            case: None,
+            ..Measurement::default()
         });
         c_int::from(holds)
     }
@@ -155,15 +150,9 @@ unsafe extern "C" fn check_trajectory(context: *mut c_void, check: *const rtf_tr
             RTF_ALIGN_TIME => Alignment::Time,
             RTF_ALIGN_DTW => Alignment::Dtw,
             other => {
-                return session.message(Message {
-                    kind: MessageKind::Error,
-                    text: format!("a trajectory has the unknown alignment {other}"),
-                    location: location(check.file, check.line),
-                    comparison: None,
-                    critical: false,
-                    case: None,
-                    interval: None,
-                });
+                let text = format!("a trajectory has the unknown alignment {other}");
+                let location = location(check.file, check.line);
+                return session.message(Message::new(MessageKind::Error, text, location));
             }
         };
         session.check_trajectory(TrajectoryCheck {
@@ -236,9 +225,7 @@ unsafe extern "C" fn attach(context: *mut c_void, attachment: *const rtf_attachm
             name,
             path: path.clone(),
             media_type,
-            case: None,
-            picture: None,
-            omitted: false,
+            ..Attachment::default()
         }) {
             report_error(session, format!("`{path}` cannot be attached: {error}"));
         }
@@ -403,16 +390,7 @@ unsafe fn list_entries(entries: &[rtf_parameter], count: *mut usize) -> *const r
 
 /// Reports an error of a call that the plug-in made.
 fn report_error(session: &Session, text: String) {
-    let (kind, location, comparison) = (MessageKind::Error, None, None);
-    session.message(Message {
-        kind,
-        text,
-        location,
-        comparison,
-        critical: false,
-        case: None,
-        interval: None,
-    });
+    session.message(Message::new(MessageKind::Error, text, None));
 }
 
 /// # Safety

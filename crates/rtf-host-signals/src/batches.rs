@@ -18,12 +18,7 @@ impl Batches {
         let batch = |signal: &SignalConfig| Samples {
             name: signal.name.clone(),
             unit: signal.unit.clone(),
-            low: None,
-            high: None,
-            location: None,
-            case: None,
-            since: None,
-            points: Vec::new(),
+            ..Samples::default()
         };
         Self { test, signals: signals.iter().map(batch).collect() }
     }

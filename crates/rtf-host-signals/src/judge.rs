@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use rtf_host::Session;
 use rtf_model::{
-    Finding, FindingSeverity, Location, Measurement, Message, MessageKind, SignalConfig,
-    SignalInterval, TestId, format_rounded,
+    Finding, FindingSeverity, Measurement, Message, MessageKind, SignalConfig, SignalInterval,
+    TestId, format_rounded,
 };
 use rtf_monitor::{Monitor, Outcome, Verdict, Violation};
 
@@ -71,14 +71,6 @@ pub(crate) struct ReportedTest<'a> {
     pub signals: &'a [SignalConfig],
 }
 
-impl ReportedTest<'_> {
-    /// Reports a problem.
-    pub fn finding(&self, severity: FindingSeverity, text: String, location: Option<Location>) {
-        let test = self.id;
-        self.session.finding(Finding { test, severity, text, location, interval: None });
-    }
-}
-
 /// Reports the results of a monitor.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MonitorReport<'a> {
@@ -100,10 +92,6 @@ impl MonitorReport<'_> {
             interval: is_finite
                 .then(|| Box::new(SignalInterval { since: None, start, end, signals })),
         });
-    }
-
-    fn finding(&self, severity: FindingSeverity, text: String) {
-        self.test.finding(severity, text, self.monitor.location.clone());
     }
 
     /// "monitor `no overshoot`: `q <= 1.05` does not hold at 0.42 s: q = 1.08 rad (robustness
@@ -137,14 +125,9 @@ impl MonitorReport<'_> {
         let signal = self.signal(value.signal);
         let (name, unit) = signal.map_or(("", ""), |signal| (&signal.name, &signal.unit));
         let measured = Measurement {
-            name: String::new(),
             value: Some(value.value).filter(|value| value.is_finite()),
             unit: unit.to_owned(),
-            low: None,
-            high: None,
-            learned: false,
-            location: None,
-            case: None,
+            ..Measurement::default()
         };
         format!("{name} = {}", measured.for_display().0)
     }
@@ -161,22 +144,17 @@ impl MonitorReport<'_> {
             missing.map(|index| format!("`{}`", self.test.signals[*index].name)).collect();
         if !missing.is_empty() {
             let missing = missing.join(", ");
-            let text = format!("monitor `{name}` was not judged: no sample of {missing}");
-            return self.finding(FindingSeverity::Error, text);
+            return self.test.session.finding(Finding {
+                test: self.test.id,
+                severity: FindingSeverity::Error,
+                text: format!("monitor `{name}` was not judged: no sample of {missing}"),
+                location: self.monitor.location.clone(),
+                interval: None,
+            });
         }
         let text = format!("monitor `{name}` was not judged: the test was too short for it");
         let location = self.monitor.location.clone();
-        let (kind, comparison) = (MessageKind::Report, None);
-        let message = Message {
-            kind,
-            text,
-            location,
-            comparison,
-            critical: false,
-            case: None,
-            interval: None,
-        };
-        self.test.session.message(message);
+        self.test.session.message(Message::new(MessageKind::Report, text, location));
     }
 
     /// Reports the robustness; it must not be negative, unless the test was not judged.
@@ -184,12 +162,9 @@ impl MonitorReport<'_> {
         self.test.session.report_judged(Measurement {
             name: format!("monitor/{}", self.monitor.name),
             value: Some(robustness),
-            unit: String::new(),
             low: is_judged.then_some(0.0),
-            high: None,
-            learned: false,
             location: self.monitor.location.clone(),
-            case: None,
+            ..Measurement::default()
         });
     }
 }

@@ -20,16 +20,10 @@ mod source_time;
 mod test_run;
 mod watch;
 
-use std::path::Path;
+use rtf_host::{HostProgram, Session, added_fixture, serve};
 
-use rtf_host::{CheckedFile, HostProgram, Session, serve};
-
-/// The program. It has no plug-ins: `--check` accepts every file.
-pub const PROGRAM: HostProgram<()> = HostProgram { check, prepare: || (), serve: serve_signals };
-
-fn check(file: &Path) -> CheckedFile {
-    CheckedFile::good(file, None)
-}
+pub const PROGRAM: HostProgram<()> =
+    HostProgram { check: added_fixture::check, prepare: || (), serve: serve_signals };
 
 fn serve_signals(session: &Session, (): ()) -> std::io::Result<()> {
     serve(session, host::SignalsHost::new(session.clone()))

@@ -44,7 +44,7 @@ impl Recorder {
     pub fn sample(&mut self, sample: SignalSample) {
         self.last[sample.source] = Some(sample.time);
         for test in &mut self.tests {
-            test.sample(sample, &self.settings, &self.session);
+            test.sample(sample);
         }
     }
 
@@ -66,7 +66,7 @@ impl Recorder {
         };
         let origins = self.last.iter().enumerate().map(origin).collect();
         self.tests.retain(|other| other.id != test.id);
-        self.tests.push(TestRun::new(test, start, origins, &self.settings));
+        self.tests.push(TestRun::new(test, start, origins, (&self.settings, &self.session)));
         Ok(())
     }
 
@@ -78,8 +78,8 @@ impl Recorder {
         let now = self.now()?;
         let ended = self.tests.extract_if(.., |running| running.id == test);
         for mut test in ended {
-            test.play(&self.recordings, now, &self.settings, &self.session);
-            test.finish((now, was_stopped), &self.settings, &self.session);
+            test.play(&self.recordings, now);
+            test.finish(now, was_stopped);
         }
         Ok(())
     }
@@ -89,7 +89,7 @@ impl Recorder {
         // It follows the answer to the start of the test, which needed the clock.
         let Ok(now) = self.now() else { return };
         if let Some(test) = self.tests.iter_mut().find(|running| running.id == test) {
-            test.reported(report, now, &self.settings, &self.session);
+            test.reported(report, now);
         }
     }
 
@@ -97,14 +97,14 @@ impl Recorder {
     pub fn play(&mut self) -> Option<Duration> {
         let now = self.now().ok()?;
         for test in &mut self.tests {
-            test.play(&self.recordings, now, &self.settings, &self.session);
+            test.play(&self.recordings, now);
         }
         let next = self.tests.iter().filter_map(|test| test.next_recorded(&self.recordings, now));
         Duration::try_from_secs_f64(next.reduce(f64::min)?).ok()
     }
 
     pub fn send(&mut self) {
-        self.tests.iter_mut().for_each(|test| test.send(&self.session));
+        self.tests.iter_mut().for_each(TestRun::send);
     }
 
     fn now(&self) -> Result<TestStart, String> {

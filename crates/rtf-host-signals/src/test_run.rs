@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rtf_host::Session;
 use rtf_model::protocol::{TestAttempt, TestReport};
-use rtf_model::{FindingSeverity, Samples, TestId, TestQuantity};
+use rtf_model::{Finding, FindingSeverity, Location, Samples, TestId, TestQuantity};
 
 use crate::batches::Batches;
 use crate::judge::{MonitorReport, ReportedTest, RunningMonitor};
@@ -18,6 +18,8 @@ const RESOLUTION: f64 = 1e-6;
 #[derive(Debug)]
 pub(crate) struct TestRun {
     pub id: TestId,
+    settings: Arc<Settings>,
+    session: Session,
     start: TestStart,
     /// Its zero on the clock of each source.
     origins: Vec<Origin>,
@@ -50,7 +52,7 @@ impl TestRun {
         test: &TestAttempt,
         start: TestStart,
         origins: Vec<Origin>,
-        settings: &Settings,
+        (settings, session): (&Arc<Settings>, &Session),
     ) -> Self {
         let monitors = RunningMonitor::of_test(settings, &test.name);
         let mut run = Self {
@@ -65,6 +67,8 @@ impl TestRun {
             played: vec![0; settings.recordings.len()],
             setup: 0.0,
             has_unit_error: false,
+            settings: Arc::clone(settings),
+            session: session.clone(),
         };
         monitors.into_iter().for_each(|monitor| run.add(monitor));
         run
@@ -78,22 +82,16 @@ impl TestRun {
     }
 
     /// Takes a sample, unless it was taken before the test. A violation is reported first.
-    pub fn sample(&mut self, sample: SignalSample, settings: &Settings, session: &Session) {
-        if let Some(time) = self.judge(sample, settings, session) {
-            self.batches.add(sample.signal, time, sample.value, session);
+    pub fn sample(&mut self, sample: SignalSample) {
+        if let Some(time) = self.judge(sample) {
+            self.batches.add(sample.signal, time, sample.value, &self.session);
         }
     }
 
     /// Plays the recordings up to a time.
-    pub fn play(
-        &mut self,
-        recordings: &[Recording],
-        now: TestStart,
-        settings: &Settings,
-        session: &Session,
-    ) {
+    pub fn play(&mut self, recordings: &[Recording], now: TestStart) {
         let elapsed = self.elapsed(now);
-        let first_source = settings.programs.len() + settings.processes.len();
+        let first_source = self.settings.programs.len() + self.settings.processes.len();
         for (index, recording) in recordings.iter().enumerate() {
             while let Some(recorded) = recording.sample(self.played[index], elapsed) {
                 self.played[index] += 1;
@@ -101,7 +99,7 @@ impl TestRun {
                 let time = SampleTime { written, arrival: now.instant };
                 let (signal, value) = (recorded.signal, recorded.value);
                 let source = first_source + index;
-                self.sample(SignalSample { source, signal, time, value }, settings, session);
+                self.sample(SignalSample { source, signal, time, value });
             }
         }
     }
@@ -118,33 +116,23 @@ impl TestRun {
     }
 
     /// Handles what the test itself reports.
-    pub fn reported(
-        &mut self,
-        report: TestReport,
-        now: TestStart,
-        settings: &Settings,
-        session: &Session,
-    ) {
+    pub fn reported(&mut self, report: TestReport, now: TestStart) {
         match report {
             TestReport::SetupStarted {} => self.setup = self.elapsed(now),
             TestReport::Sampled(samples) => {
                 let points = samples.points.iter().map(|(time, value)| (self.setup + time, *value));
                 let points: Vec<_> = points.collect();
-                self.take(&samples, (TestQuantity::Sample, &points), settings, session);
+                self.take(&samples, TestQuantity::Sample, &points);
             }
             TestReport::Measured(measured) => {
                 let points = [(self.elapsed(now), measured.value)];
                 let samples = Samples {
                     name: measured.name,
                     unit: measured.unit,
-                    low: None,
-                    high: None,
                     location: measured.location,
-                    case: None,
-                    since: None,
-                    points: Vec::new(),
+                    ..Samples::default()
                 };
-                self.take(&samples, (TestQuantity::Measurement, &points), settings, session);
+                self.take(&samples, TestQuantity::Measurement, &points);
             }
             TestReport::Monitor(declared) => {
                 let location = declared.location.clone();
@@ -152,27 +140,19 @@ impl TestRun {
                 let monitor = if self.monitors.iter().any(is_known) {
                     Err(format!("another monitor of this test is named `{}`", declared.name))
                 } else {
-                    settings.monitor(declared)
+                    self.settings.monitor(declared)
                 };
                 match monitor.map(|monitor| RunningMonitor::new(Arc::new(monitor))) {
                     Ok(monitor) => monitor.into_iter().for_each(|monitor| self.add(monitor)),
-                    Err(text) => {
-                        let test = self.described(settings, session);
-                        test.finding(FindingSeverity::Error, text, location);
-                    }
+                    Err(text) => self.report_error(text, location),
                 }
             }
         }
     }
 
     /// Judges what the test reports under the name of a signal; it is part of its results already.
-    fn take(
-        &mut self,
-        reported: &Samples,
-        (quantity, points): (TestQuantity, &[(f64, Option<f64>)]),
-        settings: &Settings,
-        session: &Session,
-    ) {
+    fn take(&mut self, reported: &Samples, quantity: TestQuantity, points: &[(f64, Option<f64>)]) {
+        let settings = Arc::clone(&self.settings);
         let is_meant = |(signal, of): &&(usize, TestQuantity)| {
             *of == quantity && settings.signals[*signal].name == reported.name
         };
@@ -186,8 +166,7 @@ impl TestRun {
                     quoted_unit(&reported.unit),
                     quoted_unit(unit)
                 );
-                let location = reported.location.clone();
-                self.described(settings, session).finding(FindingSeverity::Error, text, location);
+                self.report_error(text, reported.location.clone());
             }
             return;
         }
@@ -195,21 +174,18 @@ impl TestRun {
         for (time, value) in points {
             let time = SampleTime { written: Some(*time), arrival: self.start.instant };
             let value = value.unwrap_or(f64::NAN);
-            self.judge(SignalSample { source, signal, time, value }, settings, session);
+            self.judge(SignalSample { source, signal, time, value });
         }
     }
 
-    fn described<'a>(&self, settings: &'a Settings, session: &'a Session) -> ReportedTest<'a> {
-        ReportedTest { session, id: self.id, signals: &settings.signals }
+    fn report_error(&self, text: String, location: Option<Location>) {
+        let severity = FindingSeverity::Error;
+        let finding = Finding { test: self.id, severity, text, location, interval: None };
+        self.session.finding(finding);
     }
 
     /// Passes a sample to the monitors. Returns its time, unless it is ignored.
-    fn judge(
-        &mut self,
-        sample: SignalSample,
-        settings: &Settings,
-        session: &Session,
-    ) -> Option<f64> {
+    fn judge(&mut self, sample: SignalSample) -> Option<f64> {
         let mut time = self.origins[sample.source].time_of(sample.time, self.start);
         if time < 0.0 {
             return None;
@@ -219,16 +195,17 @@ impl TestRun {
                 // Lines that arrive together.
                 time = last + RESOLUTION;
             } else if last > time {
-                self.report_earlier_time((sample.signal, last, time), settings, session);
+                self.report_earlier_time(sample.signal, last, time);
                 return None;
             } else {
                 return None;
             }
         }
+        let signals = &self.settings.signals;
+        let test = ReportedTest { session: &self.session, id: self.id, signals };
         for (monitor, in_formula) in &self.judges[sample.signal] {
             let monitor = &mut self.monitors[*monitor];
             if let Some(violation) = monitor.sample(*in_formula, time, sample.value) {
-                let test = ReportedTest { session, id: self.id, signals: &settings.signals };
                 MonitorReport { test: &test, monitor: monitor.settings() }.violation(&violation);
             }
         }
@@ -237,18 +214,13 @@ impl TestRun {
     }
 
     /// Reports the first time that is before an earlier one.
-    fn report_earlier_time(
-        &mut self,
-        (signal, last, time): (usize, f64, f64),
-        settings: &Settings,
-        session: &Session,
-    ) {
+    fn report_earlier_time(&mut self, signal: usize, last: f64, time: f64) {
         if std::mem::replace(&mut self.has_time_error, true) {
             return;
         }
-        let name = &settings.signals[signal].name;
+        let name = &self.settings.signals[signal].name;
         let text = format!("the time of signal `{name}` went back from {last} s to {time} s");
-        self.described(settings, session).finding(FindingSeverity::Error, text, None);
+        self.report_error(text, None);
     }
 
     /// Its zero on the clock of a source.
@@ -257,21 +229,17 @@ impl TestRun {
         self.origins[source].zero()
     }
 
-    pub fn send(&mut self, session: &Session) {
-        self.batches.send(session);
+    pub fn send(&mut self) {
+        self.batches.send(&self.session);
     }
 
     /// The test's process has ended.
-    pub fn finish(
-        mut self,
-        (now, was_stopped): (TestStart, bool),
-        settings: &Settings,
-        session: &Session,
-    ) {
-        self.send(session);
+    pub fn finish(mut self, now: TestStart, was_stopped: bool) {
+        self.send();
         let last = self.last.iter().flatten().copied().fold(0.0, f64::max);
         let end = (now.clock - self.start.clock).max(last);
-        let test = self.described(settings, session);
+        let signals = &self.settings.signals;
+        let test = ReportedTest { session: &self.session, id: self.id, signals };
         self.monitors.into_iter().for_each(|monitor| monitor.finish(end, was_stopped, &test));
     }
 }

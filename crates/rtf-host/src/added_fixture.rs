@@ -1,8 +1,16 @@
 //! What the hosts of fixtures that `rtf` adds to suites have in common.
 
+use std::path::Path;
+
 use rtf_model::protocol::{Initialized, PROTOCOL_VERSION, Plugin, StackSupport};
 
-use crate::{LoadError, PluginKind};
+use crate::{CheckedFile, LoadError, PluginKind};
+
+/// Accepts every file for `--check`: there are no plug-ins.
+#[must_use]
+pub fn check(file: &Path) -> CheckedFile {
+    CheckedFile::good(file, None)
+}
 
 /// Describes the host of the fixture `name`.
 #[must_use]

@@ -197,21 +197,12 @@ impl Cases {
                 }
                 _ => (None, None),
             };
-            let outcome_only = Notification::CaseFinished {
-                case,
-                outcome,
-                reason: None,
-                duration_us: None,
-                rerun: false,
+            let finished = |reason| {
+                let (duration_us, rerun) = (None, false);
+                Notification::CaseFinished { case, outcome, reason, duration_us, rerun }
             };
-            if !send(&Notification::CaseFinished {
-                case,
-                outcome,
-                reason,
-                duration_us: None,
-                rerun: false,
-            }) {
-                send(&outcome_only);
+            if !send(&finished(reason)) {
+                send(&finished(None));
             }
         }
         self.open.fetch_sub(1, Ordering::Relaxed);
@@ -263,7 +254,7 @@ impl Cases {
     /// Whether this process was forked by the plug-in: it reports no cases and provides no
     /// values.
     pub(crate) fn may_ask(&self) -> bool {
-        self.settings.read().unwrap_or_else(PoisonError::into_inner).may_plan_or_skip()
+        self.settings().may_plan_or_skip()
     }
 
     pub(crate) fn is_forked_child(&self) -> bool {

@@ -51,21 +51,11 @@ pub fn files_to_check(args: impl IntoIterator<Item = OsString>) -> Option<Vec<Pa
 
 /// Checks each file in order and prints its line immediately, so that a file that kills the
 /// process is the one whose line is missing. Output of the plug-ins goes to standard error.
+/// A host may report more about a file than [`CheckedFile`].
 ///
 /// # Errors
 /// The standard output cannot be written.
-pub fn check(
-    files: &[PathBuf],
-    check_file: impl FnMut(&Path) -> CheckedFile,
-) -> std::io::Result<()> {
-    check_each(files, check_file)
-}
-
-/// As [`check()`], for a host that reports more about a file.
-///
-/// # Errors
-/// The standard output cannot be written.
-pub fn check_each<T: Serialize>(
+pub fn check<T: Serialize>(
     files: &[PathBuf],
     mut check_file: impl FnMut(&Path) -> T,
 ) -> std::io::Result<()> {

@@ -27,7 +27,7 @@ mod unix;
 mod writer;
 
 pub use cases::CaseEnd;
-pub use check::{CheckedFile, check, check_each, files_to_check};
+pub use check::{CheckedFile, check, files_to_check};
 pub use decode::{Incoming, decode};
 pub use plugin::{HostPlugin, LoadError, PluginKind, Reaction, Step, StepEnd, TestNotification};
 pub use process_marks::{ProcessMarks, fixture_owner};
@@ -36,4 +36,4 @@ pub use sampling::Sample;
 pub use serve::serve;
 pub use session::{FaultRequest, Inquiry, OpenError, Session};
 pub use suite_clock::SuiteClock;
-pub use unix::reset_signals;
+pub use unix::{flush_output, reset_signals};

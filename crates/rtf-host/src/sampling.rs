@@ -160,8 +160,7 @@ impl Sample<'_> {
             high: self.high,
             location,
             points: vec![point],
-            case: None,
-            since: None,
+            ..Samples::default()
         }
     }
 

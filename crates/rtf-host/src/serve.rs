@@ -27,12 +27,9 @@ pub fn serve(session: &Session, host: impl HostPlugin) -> std::io::Result<()> {
         return Ok(());
     };
     reader.spawn()?;
-    let mut incoming = Some(first);
-    while let Some(next) = incoming {
-        if server.handle(next) {
-            break;
-        }
-        incoming = session.next();
+    let mut is_last = server.handle(first);
+    while !is_last && let Some(incoming) = session.next() {
+        is_last = server.handle(incoming);
     }
     Ok(())
 }

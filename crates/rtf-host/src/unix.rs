@@ -144,8 +144,8 @@ pub(crate) fn open_regular(path: &Path) -> io::Result<File> {
     Err(io::Error::other(format!("it is {file_type}, not a file")))
 }
 
-/// Flushes C's streams.
-pub(crate) fn flush_output() {
+/// Flushes C's streams, to which plug-ins print.
+pub fn flush_output() {
     // SAFETY: null means all output streams; they are locked while written.
     unsafe { libc::fflush(std::ptr::null_mut()) };
 }

@@ -65,6 +65,15 @@ pub struct Message {
     pub interval: Option<Box<SignalInterval>>,
 }
 
+impl Message {
+    /// A message that is not critical and has no comparison.
+    #[must_use]
+    pub fn new(kind: MessageKind, text: impl Into<String>, location: Option<Location>) -> Self {
+        let (text, comparison, critical) = (text.into(), None, false);
+        Self { kind, text, location, comparison, critical, case: None, interval: None }
+    }
+}
+
 /// A part of a test's time, and the signals that a problem in it is about.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -104,7 +113,7 @@ pub(crate) fn is_within(value: Option<f64>, low: Option<f64>, high: Option<f64>)
 }
 
 /// A number that a test measured, with its limits.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Measurement {
     /// Its name.
@@ -211,7 +220,7 @@ pub fn format_rounded(number: f64) -> String {
 }
 
 /// A file that a test attaches to its result.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Attachment {
     /// Its name in reports.

@@ -7,7 +7,7 @@ use crate::{CaseId, Location, Measurement, Micros, format_rounded};
 
 /// A batch of samples of one signal, in the order in which they were taken, with the
 /// limits that each of them must keep. A host sends a signal in batches.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Samples {
     /// The signal.

@@ -11,7 +11,7 @@ use rustix::net::{
 };
 
 /// How many descriptors are passed at once, at most.
-pub const MAX_DESCRIPTORS: usize = 3;
+pub const MAX_DESCRIPTORS: usize = 4;
 
 /// Sends bytes and descriptors; returns the number of bytes. The descriptors travel with
 /// the first byte.

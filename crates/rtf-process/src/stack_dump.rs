@@ -91,13 +91,12 @@ async fn run(command: &[&str], spawner: &Spawner) -> std::io::Result<String> {
 }
 
 /// Removes messages of the debugger itself.
-fn remove_noise(text: &str) -> String {
-    let noise = |line: &&str| {
-        ["[New LWP", "[Thread debugging", "Using host", "warning:", "[Inferior", "Attaching to"]
-            .iter()
-            .all(|start| !line.starts_with(start))
-    };
-    text.lines().filter(noise).collect::<Vec<_>>().join("\n").trim().to_owned()
+#[must_use]
+pub fn remove_noise(text: &str) -> String {
+    let noise =
+        ["[New LWP", "[Thread debugging", "Using host", "warning:", "[Inferior", "Attaching to"];
+    let is_stack = |line: &&str| noise.iter().all(|start| !line.starts_with(start));
+    text.lines().filter(is_stack).collect::<Vec<_>>().join("\n").trim().to_owned()
 }
 
 #[cfg(test)]

@@ -17,17 +17,7 @@ impl CaseReporter<'_> {
         text: impl Into<String>,
         location: Option<Location>,
     ) {
-        let text = text.into();
-        let message = Message {
-            kind,
-            text,
-            location,
-            comparison: None,
-            critical: false,
-            case: None,
-            interval: None,
-        };
-        self.full_message(path, message);
+        self.full_message(path, Message::new(kind, text, location));
     }
 
     /// Reports a message with all its fields, see [`Self::message`].
@@ -69,13 +59,8 @@ impl CaseReporter<'_> {
     pub fn property(&mut self, path: Option<&str>, name: &str, value: &str) {
         match value.trim().parse::<f64>() {
             Ok(number) if number.is_finite() => {
-                let (name, unit) = (name.to_owned(), String::new());
-                let (low, high, location, case) = (None, None, None, None);
-                let value = Some(number);
-                self.measure(
-                    path,
-                    Measurement { learned: false, name, value, unit, low, high, location, case },
-                );
+                let (name, value) = (name.to_owned(), Some(number));
+                self.measure(path, Measurement { name, value, ..Measurement::default() });
             }
             _ => self.message(path, MessageKind::Report, format!("{name}: {value}"), None),
         }
@@ -96,16 +81,7 @@ impl CaseReporter<'_> {
 
     /// Reports an error of the test, outside of its cases.
     pub fn test_error(&mut self, text: String) {
-        let (kind, location, comparison) = (MessageKind::Error, None, None);
-        let message = Message {
-            kind,
-            text,
-            location,
-            comparison,
-            critical: false,
-            case: None,
-            interval: None,
-        };
+        let message = Message::new(MessageKind::Error, text, None);
         self.session.forward(&Notification::Message(message));
     }
 
@@ -122,7 +98,7 @@ impl CaseReporter<'_> {
                 Some(open.case)
             }
             None => {
-                self.has_problem |= is_problem;
+                self.process.has_problem |= is_problem;
                 None
             }
         }

@@ -9,8 +9,7 @@ use crate::xml_stream::Attributes;
 
 /// A failure, an error or a passed check.
 pub(super) fn message(kind: MessageKind, text: &str, location: Option<Location>) -> Message {
-    let text = text.trim().to_owned();
-    Message { kind, text, location, comparison: None, critical: false, case: None, interval: None }
+    Message::new(kind, text.trim(), location)
 }
 
 /// Makes a failure that the program accepts a report.
@@ -78,7 +77,7 @@ pub(super) fn unique_names(cases: &mut [ListedCase]) {
 }
 
 /// The cases that a process runs, for finding them by their name and location.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct RunningCases(Vec<ListedCase>);
 
 impl RunningCases {

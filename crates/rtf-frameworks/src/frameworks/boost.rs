@@ -8,17 +8,13 @@ mod log;
 
 use std::path::Path;
 use std::process::Command;
-use std::time::Duration;
 
 use crate::case::ListedCase;
 use crate::framework::{
     Framework, Launch, ListError, OpenChannel, ReportChannel, ReportReader, TestProgram,
 };
-use crate::listing::{self, file_name};
+use crate::listing;
 use crate::report_dir;
-
-/// The limit for listing the cases of a program.
-const LIST_LIMIT: Duration = Duration::from_secs(60);
 
 /// Parameters that would change which cases run, or where results go.
 const RESERVED: [&str; 22] = [
@@ -71,10 +67,11 @@ impl Framework for BoostTest {
         listing::refuse_reserved(&own, &RESERVED)?;
         let mut command = command(&test.file);
         command.arg("--list_content=DOT").args(&test.args);
-        let listed = listing::run(command, LIST_LIMIT)?;
+        let listed = listing::run(command, listing::LIST_LIMIT)?;
         let texts = [&listed.stderr, &listed.stdout];
         let cases = texts.iter().find_map(|text| parse_list(&String::from_utf8_lossy(text)));
-        cases.map(Some).ok_or_else(|| not_boost(&test.file, &listed))
+        let options = "--list_content=DOT";
+        cases.map(Some).ok_or_else(|| listed.not_of("Boost.Test", &test.file, options))
     }
 
     fn channel(&self) -> ReportChannel {
@@ -144,16 +141,6 @@ fn filter(path: &str) -> String {
         None => name.to_owned(),
     };
     path.split('/').map(name).collect::<Vec<_>>().join("/")
-}
-
-fn not_boost(file: &Path, listed: &listing::Listed) -> ListError {
-    let (name, status, quote) = (file_name(file), listed.status, listed.quote());
-    let message =
-        format!("`{name}` is no Boost.Test program: `--list_content=DOT` lists nothing ({status})");
-    ListError::new(match quote.is_empty() {
-        true => message,
-        false => format!("{message}\nit printed\n{quote}"),
-    })
 }
 
 #[cfg(test)]

@@ -8,15 +8,11 @@ mod output;
 
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
-use std::time::Duration;
 
 use crate::case::ListedCase;
 use crate::framework::{Framework, Launch, ListError, ReportChannel, ReportReader, TestProgram};
-use crate::listing;
+use crate::listing::{self, LIST_LIMIT};
 use build::{Build, TestBinary};
-
-/// The limit for a program that lists its tests.
-const LIST_LIMIT: Duration = Duration::from_secs(60);
 
 /// Arguments of `cargo test` that would change what it prints or runs.
 const RESERVED: [&str; 3] = ["--no-run", "--message-format", "--doc"];

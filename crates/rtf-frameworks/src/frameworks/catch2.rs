@@ -6,9 +6,7 @@
 
 mod stream;
 
-use std::path::Path;
 use std::process::Command;
-use std::time::Duration;
 
 use rtf_model::Location;
 
@@ -17,12 +15,9 @@ use crate::case::ListedCase;
 use crate::framework::{
     Framework, Launch, ListError, OpenChannel, ReportChannel, ReportReader, TestProgram,
 };
-use crate::listing::{self, file_name};
+use crate::listing;
 use crate::xml_report::XmlReport;
 use crate::xml_stream::XmlEvent;
-
-/// The limit for listing the cases of a program.
-const LIST_LIMIT: Duration = Duration::from_secs(60);
 
 /// The exit code if all cases were skipped.
 const ALL_SKIPPED: i32 = 4;
@@ -136,15 +131,14 @@ fn pattern(case: &ListedCase) -> String {
 
 /// The cases that match the arguments of the test, or this specification in addition.
 fn list(test: &TestProgram, specification: Option<&str>) -> Result<Vec<ListedCase>, ListError> {
-    let dir = tempfile::tempdir().map_err(|error| ListError::new(error.to_string()))?;
-    let report = dir.path().join("list.xml");
-    let mut command = command(test);
-    command.arg("--list-tests").arg("-r").arg(format!("xml::out={}", report.display()));
-    // After a comma: otherwise both specifications would have to match.
-    command.args(specification.map(|text| format!(",{text}")));
-    let listed = listing::run(command, LIST_LIMIT)?;
-    let text = std::fs::read(&report).unwrap_or_default();
-    parse_list(&text).ok_or_else(|| not_catch2(&test.file, &listed))
+    let (text, listed) = listing::run_with_file(|list| {
+        let mut command = command(test);
+        command.arg("--list-tests").arg("-r").arg(format!("xml::out={}", list.display()));
+        // After a comma: otherwise both specifications would have to match.
+        command.args(specification.map(|text| format!(",{text}")));
+        command
+    })?;
+    parse_list(&text).ok_or_else(|| listed.not_of("Catch2 3", &test.file, "--list-tests -r xml"))
 }
 
 /// The cases in a list; `None` if it is none.
@@ -174,16 +168,6 @@ pub(super) fn parse_list(text: &[u8]) -> Option<Vec<ListedCase>> {
 fn tags(text: &str) -> Vec<String> {
     let tags = text.trim().trim_start_matches('[').trim_end_matches(']').split("][");
     tags.filter(|tag| !tag.is_empty()).map(str::to_owned).collect()
-}
-
-fn not_catch2(file: &Path, listed: &listing::Listed) -> ListError {
-    let (name, status, quote) = (file_name(file), listed.status, listed.quote());
-    let message =
-        format!("`{name}` is no Catch2 3 program: `--list-tests -r xml` lists nothing ({status})");
-    ListError::new(match quote.is_empty() {
-        true => message,
-        false => format!("{message}\nit printed\n{quote}"),
-    })
 }
 
 #[cfg(test)]

@@ -9,8 +9,7 @@
 use std::process::Command;
 
 use super::session_program::SessionReader;
-use crate::case::ListedCase;
-use crate::framework::{Framework, Launch, ListError, ReportChannel, ReportReader, TestProgram};
+use crate::framework::{Framework, Launch, ReportReader};
 use crate::preload;
 
 const LIBRARY: &str = "librtf-cppunit.so";
@@ -21,14 +20,6 @@ const ADD_HEADER: &str = "add `rtf::report_cases(…)` of `rtf/cppunit.hpp` to i
 pub struct CppUnit;
 
 impl Framework for CppUnit {
-    fn list(&self, _test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
-        Ok(None)
-    }
-
-    fn channel(&self) -> ReportChannel {
-        ReportChannel::None
-    }
-
     fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
         let mut command = launch.test.command();
         if let Some(library) = preload::library(LIBRARY) {

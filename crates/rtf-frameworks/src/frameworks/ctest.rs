@@ -19,7 +19,7 @@ use std::time::Duration;
 use rtf_model::{Location, Outcome};
 
 use crate::case::{CaseResult, ListedCase, Repetition};
-use crate::framework::{Framework, Launch, ListError, ReportChannel, ReportReader, TestProgram};
+use crate::framework::{Framework, Launch, ListError, ReportReader, TestProgram};
 use crate::listing;
 use properties::CTestCase;
 
@@ -41,10 +41,6 @@ impl Framework for CTest {
         // A host runs one test.
         drop(self.tests.set(tests));
         Ok(Some(cases))
-    }
-
-    fn channel(&self) -> ReportChannel {
-        ReportChannel::None
     }
 
     fn watches_output(&self, _launch: &Launch<'_>) -> bool {

@@ -5,21 +5,16 @@
 
 mod stream;
 
-use std::path::Path;
 use std::process::Command;
-use std::time::Duration;
 
 use super::assertion;
 use crate::case::ListedCase;
 use crate::framework::{
     Framework, Launch, ListError, OpenChannel, ReportChannel, ReportReader, TestProgram,
 };
-use crate::listing::{self, file_name};
+use crate::listing;
 use crate::xml_report::XmlReport;
 use crate::xml_stream::XmlEvent;
-
-/// The limit for listing the cases of a program.
-const LIST_LIMIT: Duration = Duration::from_secs(60);
 
 /// The longest argument that Linux accepts is 128 KiB.
 const FILTER_BYTES: usize = 120 * 1024;
@@ -123,14 +118,14 @@ fn escape(name: &str) -> String {
 }
 
 fn list(test: &TestProgram, options: &[&str]) -> Result<Vec<ListedCase>, ListError> {
-    let dir = tempfile::tempdir().map_err(|error| ListError::new(error.to_string()))?;
-    let report = dir.path().join("list.xml");
-    let mut command = test.command();
-    command.args(["--list-test-cases", "--reporters=xml"]).args(options);
-    command.arg(format!("--out={}", report.display()));
-    let listed = listing::run(command, LIST_LIMIT)?;
-    let text = std::fs::read(&report).unwrap_or_default();
-    parse_list(&text).ok_or_else(|| not_doctest(&test.file, &listed))
+    let (text, listed) = listing::run_with_file(|list| {
+        let mut command = test.command();
+        command.args(["--list-test-cases", "--reporters=xml"]).args(options);
+        command.arg(format!("--out={}", list.display()));
+        command
+    })?;
+    let options = "--list-test-cases --reporters=xml";
+    parse_list(&text).ok_or_else(|| listed.not_of("doctest", &test.file, options))
 }
 
 /// The cases in a list; `None` if it is none.
@@ -147,17 +142,6 @@ pub(super) fn parse_list(text: &[u8]) -> Option<Vec<ListedCase>> {
         })
     };
     Some(events.iter().filter_map(case).collect())
-}
-
-fn not_doctest(file: &Path, listed: &listing::Listed) -> ListError {
-    let (name, status, quote) = (file_name(file), listed.status, listed.quote());
-    let message = format!(
-        "`{name}` is no doctest program: `--list-test-cases --reporters=xml` lists nothing ({status})"
-    );
-    ListError::new(match quote.is_empty() {
-        true => message,
-        false => format!("{message}\nit printed\n{quote}"),
-    })
 }
 
 #[cfg(test)]

@@ -10,7 +10,6 @@ mod stream;
 
 use std::path::Path;
 use std::process::Command;
-use std::time::Duration;
 
 use rtf_model::{Location, Parameter};
 use serde::Deserialize;
@@ -20,11 +19,8 @@ use crate::case::ListedCase;
 use crate::framework::{
     Framework, Launch, ListError, OpenChannel, ReportChannel, ReportReader, TestProgram,
 };
-use crate::listing::{self, file_name};
+use crate::listing;
 use crate::report_dir;
-
-/// The limit for listing the tests of a program.
-const LIST_LIMIT: Duration = Duration::from_secs(60);
 
 /// Above this length, the filter is passed in a file: an argument has at most 128 KiB.
 const FILTER_BYTES: usize = 64 * 1024;
@@ -100,15 +96,15 @@ impl Test {
 impl Framework for GoogleTest {
     fn list(&self, test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
         listing::refuse_reserved(&test.args, &RESERVED)?;
-        let dir = tempfile::tempdir().map_err(|error| ListError::new(error.to_string()))?;
-        let report = dir.path().join("list.json");
-        let mut command = command(test);
-        command.arg("--gtest_list_tests").arg(output_flag(&report));
-        let listed = listing::run(command, LIST_LIMIT)?;
+        let (text, listed) = listing::run_with_file(|list| {
+            let mut command = command(test);
+            command.arg("--gtest_list_tests").arg(output_flag(list));
+            command
+        })?;
         let runs_disabled = test.args.iter().any(|arg| arg.starts_with(RUN_DISABLED));
-        let text = std::fs::read(&report).unwrap_or_default();
         let cases = parse_list(&text, runs_disabled);
-        cases.map(Some).ok_or_else(|| not_gtest(&test.file, &listed))
+        let options = "--gtest_list_tests";
+        cases.map(Some).ok_or_else(|| listed.not_of("GoogleTest", &test.file, options))
     }
 
     fn channel(&self) -> ReportChannel {
@@ -211,19 +207,6 @@ fn cases(report: &Report, runs_disabled: bool) -> Vec<ListedCase> {
         suite.testsuite.iter().map(case).collect()
     };
     report.testsuites.iter().flat_map(of_suite).collect()
-}
-
-fn not_gtest(file: &Path, listed: &listing::Listed) -> ListError {
-    let name = file_name(file);
-    let how = listed.status;
-    let quote = listed.quote();
-    let message =
-        format!("`{name}` is no GoogleTest program: `--gtest_list_tests` lists nothing ({how})");
-    ListError::new(if quote.is_empty() {
-        message
-    } else {
-        format!("{message}\nit printed\n{quote}")
-    })
 }
 
 #[cfg(test)]

@@ -143,15 +143,12 @@ fn select_line(id: &str) -> String {
 }
 
 fn no_tests(test: &TestProgram, listed: &listing::Listed) -> ListError {
-    let name = file_name(&test.file);
-    let how = listed.status;
-    let message = format!("the console launcher finds no tests in `{name}` ({how})");
-    let quote = listed.quote();
-    ListError::new(if quote.is_empty() {
-        format!(
-            "{message}\nnames of test classes start with `Test` or end with `Test` or `Tests`; `-n PATTERN` in `param` changes that"
-        )
-    } else {
-        format!("{message}\nit printed\n{quote}")
-    })
+    let (name, status) = (file_name(&test.file), listed.status);
+    let hint = match listed.quote().is_empty() {
+        true => {
+            "\nnames of test classes start with `Test` or end with `Test` or `Tests`; `-n PATTERN` in `param` changes that"
+        }
+        false => "",
+    };
+    listed.error(format!("the console launcher finds no tests in `{name}` ({status}){hint}"))
 }

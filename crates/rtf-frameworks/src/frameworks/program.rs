@@ -1,13 +1,9 @@
 //! Any program: its exit code is the verdict.
 
-use std::process::Command;
-
 use rtf_model::{ExitStatus, Outcome};
 
-use crate::case::{CaseResult, ListedCase};
-use crate::framework::{
-    Framework, Launch, ListError, NoReport, ReportChannel, ReportReader, TestProgram,
-};
+use crate::case::CaseResult;
+use crate::framework::{Framework, Launch};
 use crate::last_output::LastOutput;
 
 /// The exit code of a test that skips itself, as in Automake and Meson.
@@ -23,24 +19,8 @@ const NOT_FOUND: i32 = 127;
 pub struct Program;
 
 impl Framework for Program {
-    fn list(&self, _test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
-        Ok(None)
-    }
-
-    fn channel(&self) -> ReportChannel {
-        ReportChannel::None
-    }
-
     fn watches_output(&self, _launch: &Launch<'_>) -> bool {
         true
-    }
-
-    fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
-        Ok(launch.test.command())
-    }
-
-    fn reader(&self, _launch: &Launch<'_>) -> Box<dyn ReportReader> {
-        Box::new(NoReport)
     }
 
     fn program_result(&self, end: ExitStatus, output: &LastOutput) -> Option<CaseResult> {

@@ -7,9 +7,7 @@ use rtf_model::protocol::CaseSelector;
 use serde::Serialize;
 
 use crate::case::ListedCase;
-use crate::framework::{
-    Framework, Launch, ListError, NoReport, ReportChannel, ReportReader, StackDump, TestProgram,
-};
+use crate::framework::{Framework, Launch, ListError, StackDump, TestProgram};
 use crate::listing::{self, Listed};
 
 use super::python;
@@ -77,10 +75,6 @@ impl Framework for Pytest {
         Ok(None)
     }
 
-    fn channel(&self) -> ReportChannel {
-        ReportChannel::None
-    }
-
     fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
         let mut command = command(launch.test, &[]);
         command.env_remove(SELECTION_VARIABLE);
@@ -92,10 +86,6 @@ impl Framework for Pytest {
             command.env(SELECTION_VARIABLE, file);
         }
         Ok(command)
-    }
-
-    fn reader(&self, _launch: &Launch<'_>) -> Box<dyn ReportReader> {
-        Box::new(NoReport)
     }
 
     fn accepts_exit(&self, code: i32, has_problem: bool) -> bool {

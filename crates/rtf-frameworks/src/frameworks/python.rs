@@ -96,7 +96,11 @@ pub(super) fn list(
     if is_complete {
         return Ok(cases);
     }
-    Err(ListError::new(explain(&listed).unwrap_or_else(|| incomplete(&test.file, &listed))))
+    let known = explain(&listed).map(ListError::new);
+    Err(known.unwrap_or_else(|| {
+        let (name, status) = (file_name(&test.file), listed.status);
+        listed.error(format!("the cases of `{name}` could not be listed ({status})"))
+    }))
 }
 
 fn listed_case(case: Case) -> ListedCase {
@@ -110,10 +114,4 @@ fn problem(file: &Path, problems: &[Problem]) -> ListError {
     let is_here = |location: &&Location| Path::new(&location.file) == file;
     let line = problems.iter().filter_map(|it| it.location.as_ref()).find(is_here);
     ListError { message: texts.join("\n"), line: line.map(|location| location.line) }
-}
-
-fn incomplete(file: &Path, listed: &Listed) -> String {
-    let (name, status, quote) = (file_name(file), listed.status, listed.quote());
-    let message = format!("the cases of `{name}` could not be listed ({status})");
-    if quote.is_empty() { message } else { format!("{message}\nit printed\n{quote}") }
 }

@@ -12,9 +12,7 @@ use rtf_model::{ExitStatus, Location, MessageKind, Outcome};
 
 use crate::case::{CaseResult, ListedCase, StartedCase};
 use crate::case_reporter::CaseReporter;
-use crate::framework::{
-    Framework, Garbage, Launch, ListError, ReportChannel, ReportReader, TestProgram,
-};
+use crate::framework::{Framework, Garbage, Launch, ListError, ReportReader, TestProgram};
 use results::{NodeResult, Problem, TestResult};
 
 /// Debian's packages; a ROS distribution has `ros-NAME-rostest`.
@@ -31,10 +29,6 @@ impl Framework for Rostest {
             true => Ok(None),
             false => Err(ListError::new(format!("there is no program `rostest`; {HINT}"))),
         }
-    }
-
-    fn channel(&self) -> ReportChannel {
-        ReportChannel::None
     }
 
     fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
@@ -63,10 +57,6 @@ struct RostestReader {
 }
 
 impl ReportReader for RostestReader {
-    fn report(&mut self, _bytes: &[u8], _cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
-        Ok(())
-    }
-
     fn finish(&mut self, end: ExitStatus, cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
         let nodes = match (results::read(&self.results), end) {
             (Ok(nodes), _) => nodes,

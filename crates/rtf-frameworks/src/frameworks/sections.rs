@@ -21,7 +21,7 @@ struct Section {
 }
 
 /// The running test case and its open sections.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Sections {
     top: String,
     /// The open sections, each in the one before.
@@ -37,7 +37,7 @@ impl Sections {
     pub fn start_case(case: StartedCase, cases: &mut CaseReporter<'_>) -> Self {
         let top = case.name.clone();
         cases.start(case);
-        Self { top, open: Vec::new(), depth: 0, entered: HashMap::new() }
+        Self { top, ..Self::default() }
     }
 
     /// The path of the section in which the program is.

@@ -13,10 +13,6 @@ pub(super) struct SessionReader {
 }
 
 impl ReportReader for SessionReader {
-    fn report(&mut self, _bytes: &[u8], _cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
-        Ok(())
-    }
-
     fn finish(&mut self, end: ExitStatus, cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
         let has_cases =
             cases.has_plan() || !cases.results().is_empty() || cases.running().is_some();

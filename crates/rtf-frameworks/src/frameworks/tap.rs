@@ -9,15 +9,12 @@ mod parser;
 mod perl;
 
 use std::collections::HashMap;
-use std::process::Command;
 
 use rtf_model::{Comparison, ExitStatus, Location, Measurement, Message, MessageKind, Outcome};
 
-use crate::case::{CaseResult, ListedCase, StartedCase};
+use crate::case::{CaseResult, StartedCase};
 use crate::case_reporter::CaseReporter;
-use crate::framework::{
-    Framework, Garbage, Launch, ListError, ReportChannel, ReportReader, TestProgram,
-};
+use crate::framework::{Framework, Garbage, Launch, ReportChannel, ReportReader};
 use crate::last_output::OutputStream;
 use diagnostics::Diagnostics;
 use line::Directive;
@@ -37,20 +34,12 @@ const ERROR_LINE_BYTES: usize = 4096;
 pub struct Tap;
 
 impl Framework for Tap {
-    fn list(&self, _test: &TestProgram) -> Result<Option<Vec<ListedCase>>, ListError> {
-        Ok(None)
-    }
-
     fn channel(&self) -> ReportChannel {
         ReportChannel::Stdout
     }
 
     fn watches_output(&self, _launch: &Launch<'_>) -> bool {
         true
-    }
-
-    fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
-        Ok(launch.test.command())
     }
 
     fn reader(&self, launch: &Launch<'_>) -> Box<dyn ReportReader> {
@@ -302,15 +291,7 @@ fn report(found: Diagnostics, kind: MessageKind, path: &str, cases: &mut CaseRep
     if !lines.is_empty() {
         let text = lines.join("\n");
         let comparison = comparison.filter(|_| is_failure);
-        let message = Message {
-            kind,
-            text,
-            location,
-            comparison,
-            critical: false,
-            case: None,
-            interval: None,
-        };
+        let message = Message { comparison, ..Message::new(kind, text, location) };
         cases.full_message(Some(path), message);
     }
     for (key, text) in other {
@@ -334,13 +315,9 @@ fn comparison(expected: Option<&str>, actual: Option<&str>) -> Option<Comparison
 
 fn milliseconds(value: f64) -> Measurement {
     Measurement {
-        learned: false,
         name: "duration".to_owned(),
         value: Some(value),
         unit: "ms".to_owned(),
-        low: None,
-        high: None,
-        location: None,
-        case: None,
+        ..Measurement::default()
     }
 }

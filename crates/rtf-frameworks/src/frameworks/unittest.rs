@@ -4,9 +4,7 @@
 use std::process::Command;
 
 use crate::case::ListedCase;
-use crate::framework::{
-    Framework, Launch, ListError, NoReport, ReportChannel, ReportReader, StackDump, TestProgram,
-};
+use crate::framework::{Framework, Launch, ListError, StackDump, TestProgram};
 
 use super::python;
 
@@ -28,16 +26,8 @@ impl Framework for Unittest {
         Ok(None)
     }
 
-    fn channel(&self) -> ReportChannel {
-        ReportChannel::None
-    }
-
     fn command(&self, launch: &Launch<'_>) -> Result<Command, String> {
         Ok(self.program(launch.test))
-    }
-
-    fn reader(&self, _launch: &Launch<'_>) -> Box<dyn ReportReader> {
-        Box::new(NoReport)
     }
 
     fn announces_end(&self) -> bool {

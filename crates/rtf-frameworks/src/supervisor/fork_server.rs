@@ -4,8 +4,7 @@
 
 use std::ffi::{OsStr, OsString};
 use std::fs::File;
-use std::io::{self, IoSlice};
-use std::mem::MaybeUninit;
+use std::io;
 use std::os::fd::{AsFd, AsRawFd as _, BorrowedFd, OwnedFd, RawFd};
 use std::os::unix::ffi::OsStrExt as _;
 use std::os::unix::process::CommandExt as _;
@@ -14,12 +13,11 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use rtf_model::protocol::{FORK_VARIABLE, PROGRAM_FORKS_VARIABLE};
-use rtf_process::tree;
+use rtf_process::{descriptor_passing, tree};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::{FdFlags, retry_on_intr};
 use rustix::net::{
-    AddressFamily, RecvFlags, SendAncillaryBuffer, SendAncillaryMessage, SendFlags, Shutdown,
-    SocketFlags, SocketType, recv, sendmsg, socketpair,
+    AddressFamily, RecvFlags, SendFlags, Shutdown, SocketFlags, SocketType, recv, socketpair,
 };
 use rustix::process::{Pid, Signal, WaitOptions, kill_process, waitpid};
 
@@ -150,7 +148,8 @@ impl ForkServer {
         let pid = self.process_ahead()?;
         // The process does the same. Either way, the group exists from now on.
         let _ = rustix::process::setpgid(Some(pid), Some(pid));
-        self.send(&request(&numbers, command), &descriptors)?;
+        let request = request(&numbers, command);
+        descriptor_passing::send(self.socket.as_fd(), &request, &descriptors, SendFlags::empty())?;
         Ok(pid)
     }
 
@@ -158,18 +157,6 @@ impl ForkServer {
     fn process_ahead(&self) -> io::Result<Pid> {
         let pid = i32::try_from(self.number()?).ok().filter(|pid| *pid > 0);
         pid.and_then(Pid::from_raw).ok_or_else(|| io::Error::other("the program cannot be forked"))
-    }
-
-    fn send(&self, request: &[u8], descriptors: &[BorrowedFd<'_>]) -> io::Result<()> {
-        let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(4))];
-        let mut control = SendAncillaryBuffer::new(&mut space);
-        if !control.push(SendAncillaryMessage::ScmRights(descriptors)) {
-            return Err(io::Error::other("there are too many descriptors"));
-        }
-        let packet = [IoSlice::new(request)];
-        let flags = SendFlags::NOSIGNAL;
-        retry_on_intr(|| sendmsg(&self.socket, &packet, &mut control, flags))?;
-        Ok(())
     }
 
     /// Receives a number; it is negative after an error.

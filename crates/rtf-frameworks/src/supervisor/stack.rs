@@ -4,6 +4,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use rtf_process::stack_dump::remove_noise;
 use rtf_process::tree;
 use rustix::process::{Pid, Signal, kill_process};
 
@@ -81,16 +82,8 @@ fn by_debugger(pid: Pid) -> String {
             Command::new(program).args(args).stdin(Stdio::null()).stderr(Stdio::null()).output();
         let text = output.map(|it| String::from_utf8_lossy(&it.stdout).into_owned());
         if let Some(text) = text.ok().filter(|text| text.contains("#0")) {
-            return without_noise(&text);
+            return remove_noise(&text);
         }
     }
     "no stack dump: neither `gdb` nor `eu-stack` could read the process".to_owned()
-}
-
-/// Removes messages of the debugger itself.
-fn without_noise(text: &str) -> String {
-    let noise =
-        ["[New LWP", "[Thread debugging", "Using host", "warning:", "[Inferior", "Attaching to"];
-    let is_stack = |line: &&str| noise.iter().all(|start| !line.starts_with(start));
-    text.lines().filter(is_stack).collect::<Vec<_>>().join("\n").trim().to_owned()
 }

@@ -32,10 +32,8 @@ impl Session {
         self.attach(Attachment {
             name,
             path: picture,
-            media_type: String::new(),
-            case: None,
             picture: Some(Box::new(check)),
-            omitted: false,
+            ..Attachment::default()
         })
     }
 

@@ -190,16 +190,7 @@ impl Session {
 
     /// Reports an error of the plug-in that it did not report itself.
     pub(crate) fn error(&self, text: String, location: Option<Location>) {
-        let (kind, comparison) = (MessageKind::Error, None);
-        self.message(Message {
-            kind,
-            text,
-            location,
-            comparison,
-            critical: false,
-            case: None,
-            interval: None,
-        });
+        self.message(Message::new(MessageKind::Error, text, location));
     }
 
     pub fn collapsed(&self, reason: &str) {

@@ -100,8 +100,7 @@ impl Session {
                 path: path.to_owned(),
                 media_type: media_type.to_owned(),
                 case: self.0.cases.current(),
-                picture: None,
-                omitted: false,
+                ..Attachment::default()
             };
             self.forward_attachment(attachment).map(Some)
         };

@@ -117,8 +117,7 @@ impl PictureJob {
             path: path.to_string_lossy().into_owned(),
             media_type: media_type.to_owned(),
             case: self.attachment.case,
-            picture: None,
-            omitted: false,
+            ..Attachment::default()
         }))
     }
 
@@ -126,25 +125,15 @@ impl PictureJob {
         Notification::Measured(Measurement {
             name: format!("{}/difference", self.label),
             value: Some(difference),
-            unit: String::new(),
-            low: None,
-            high: None,
-            learned: false,
             location: self.check.location.clone(),
             case: self.attachment.case,
+            ..Measurement::default()
         })
     }
 
     fn message(&self, kind: MessageKind, text: String) -> Notification {
-        Notification::Message(Message {
-            kind,
-            text,
-            location: self.check.location.clone(),
-            comparison: None,
-            critical: false,
-            case: self.attachment.case,
-            interval: None,
-        })
+        let (location, case) = (self.check.location.clone(), self.attachment.case);
+        Notification::Message(Message { case, ..Message::new(kind, text, location) })
     }
 }
 

@@ -126,8 +126,7 @@ impl ProcessTask {
             path: format!("{relative}/{file}"),
             media_type: MEDIA_TYPE.to_owned(),
             case: check.case,
-            picture: None,
-            omitted: false,
+            ..Attachment::default()
         };
         let candidate = self.context.run_dir.join(relative).join(&file);
         let working_dir = self.job.launch.request.working_dir.clone().unwrap_or_default();
@@ -155,15 +154,8 @@ impl ProcessTask {
 }
 
 fn message(check: &TrajectoryCheck, kind: MessageKind, text: String) -> Notification {
-    Notification::Message(Message {
-        kind,
-        text,
-        location: check.location.clone(),
-        comparison: None,
-        critical: false,
-        case: check.case,
-        interval: None,
-    })
+    let location = check.location.clone();
+    Notification::Message(Message { case: check.case, ..Message::new(kind, text, location) })
 }
 
 /// A comparison in its thread.
@@ -296,12 +288,10 @@ impl TrajectoryJob {
         Notification::Sampled(Samples {
             name: format!("{}/{what}", self.label),
             unit: self.sampled.unit.clone(),
-            low: None,
-            high: None,
             location: self.check.location.clone(),
             case: self.check.case,
-            since: None,
             points: points.map(|(time, value)| (start + time, Some(value))).collect(),
+            ..Samples::default()
         })
     }
 
@@ -310,11 +300,9 @@ impl TrajectoryJob {
             name: format!("{}/{what}", self.label),
             value: Some(value).filter(|value| value.is_finite()),
             unit: self.sampled.unit.clone(),
-            low: None,
-            high: None,
-            learned: false,
             location: self.check.location.clone(),
             case: self.check.case,
+            ..Measurement::default()
         })
     }
 }

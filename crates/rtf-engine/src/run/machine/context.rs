@@ -129,6 +129,5 @@ impl<'a> Context<'a> {
 
 /// An error that the runner reports on behalf of a process.
 pub fn error_message(text: String) -> Message {
-    let (kind, location, comparison) = (MessageKind::Error, None, None);
-    Message { kind, text, location, comparison, critical: false, case: None, interval: None }
+    Message::new(MessageKind::Error, text, None)
 }

@@ -21,7 +21,7 @@ const SIGNALS: [&str; 2] = ["signal:", "memory access violation"];
 const ABORTED: &str = "Test is aborted";
 
 /// The reader of one process.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Reader {
     log: XmlReport,
     case: String,
@@ -58,18 +58,7 @@ enum Verdict {
 
 impl Reader {
     pub fn new(case: String, report: PathBuf) -> Self {
-        Self {
-            log: XmlReport::new(LOG),
-            case,
-            report,
-            path: Vec::new(),
-            messages: Vec::new(),
-            fixture_failures: Vec::new(),
-            entry: Entry::default(),
-            has_run: false,
-            skipped: None,
-            signal: None,
-        }
+        Self { log: XmlReport::new(LOG), case, report, ..Self::default() }
     }
 
     fn start(&mut self, name: &str, attributes: &Attributes) {

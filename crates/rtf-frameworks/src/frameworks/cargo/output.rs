@@ -32,7 +32,7 @@ struct Panic {
 }
 
 /// Reads the output of one process.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Reader {
     case: String,
     test: String,
@@ -55,12 +55,7 @@ impl Reader {
             case: case.to_owned(),
             test: test.to_owned(),
             workspace: workspace.to_owned(),
-            has_begun: false,
-            held: String::new(),
-            pieces: Utf8Pieces::default(),
-            errors: String::new(),
-            error_pieces: Utf8Pieces::default(),
-            crash: None,
+            ..Self::default()
         }
     }
 

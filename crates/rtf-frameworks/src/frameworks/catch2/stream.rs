@@ -15,7 +15,7 @@ use crate::xml_stream::{Attributes, XmlEvent};
 const ROOT: &str = "Catch2TestRun";
 
 /// The reader of one process.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Reader {
     report: XmlReport,
     running: RunningCases,
@@ -29,7 +29,7 @@ pub(super) struct Reader {
 }
 
 /// The running test case.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct RunningCase {
     sections: Sections,
     may_fail: bool,
@@ -49,15 +49,7 @@ struct RunningCase {
 
 impl Reader {
     pub fn new(cases: &[ListedCase]) -> Self {
-        Self {
-            report: XmlReport::new(ROOT),
-            running: RunningCases::new(cases),
-            case: None,
-            is_ignored: false,
-            check: Expression::default(),
-            benchmark: String::new(),
-            unskipped: 0,
-        }
+        Self { report: XmlReport::new(ROOT), running: RunningCases::new(cases), ..Self::default() }
     }
 
     fn start(&mut self, name: &str, attributes: &Attributes, cases: &mut CaseReporter<'_>) {
@@ -141,13 +133,7 @@ impl Reader {
             sections: Sections::start_case(start, cases),
             may_fail,
             should_fail,
-            has_failure: false,
-            skipped: None,
-            section_skipped: None,
-            skipped_sections: 0,
-            other_sections: 0,
-            is_success: false,
-            has_died: false,
+            ..RunningCase::default()
         });
     }
 
@@ -230,10 +216,8 @@ impl Reader {
     fn measure(&self, suffix: &str, attributes: &Attributes, cases: &mut CaseReporter<'_>) {
         let Some(case) = &self.case else { return };
         let name = format!("{}{suffix}", self.benchmark);
-        let value = attributes.get("value").parse().ok();
-        let (unit, low, high, location, case_id) = ("ns".to_owned(), None, None, None, None);
-        let measurement =
-            Measurement { learned: false, name, value, unit, low, high, location, case: case_id };
+        let (value, unit) = (attributes.get("value").parse().ok(), "ns".to_owned());
+        let measurement = Measurement { name, value, unit, ..Measurement::default() };
         cases.measure(Some(case.sections.path()), measurement);
     }
 }

@@ -23,6 +23,7 @@ const QUOTED_LINES: usize = 10;
 const QUOTED_CHARS: usize = 300;
 
 /// Reads the output of a test, and judges the test at its end.
+#[derive(Default)]
 pub struct Judge {
     test: CTestCase,
     output: Vec<u8>,
@@ -41,7 +42,7 @@ enum Judgement {
 
 impl Judge {
     pub fn new(test: CTestCase) -> Self {
-        Self { test, output: Vec::new(), is_cut: false, matched: None }
+        Self { test, ..Self::default() }
     }
 
     /// `ctest` reads lines, and ends the last one.
@@ -140,18 +141,11 @@ impl Judge {
         let base = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let name = if name.is_empty() { base } else { name.to_owned() };
         let (path, media_type) = (file.to_string_lossy().into_owned(), media_type.to_owned());
-        cases.attach(
-            None,
-            Attachment { name, path, media_type, case: None, picture: None, omitted: false },
-        );
+        cases.attach(None, Attachment { name, path, media_type, ..Attachment::default() });
     }
 }
 
 impl ReportReader for Judge {
-    fn report(&mut self, _bytes: &[u8], _cases: &mut CaseReporter<'_>) -> Result<(), Garbage> {
-        Ok(())
-    }
-
     fn output(&mut self, _stream: OutputStream, bytes: &[u8], _cases: &mut CaseReporter<'_>) {
         let room = OUTPUT_BYTES.saturating_sub(self.output.len());
         self.is_cut |= bytes.len() > room;

@@ -17,7 +17,7 @@ const ROOT: &str = "doctest";
 pub(super) const UNNAMED: &str = "(no name)";
 
 /// The reader of one process.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Reader {
     report: XmlReport,
     running: RunningCases,
@@ -31,7 +31,7 @@ pub(super) struct Reader {
 }
 
 /// The running test case.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct RunningCase {
     sections: Sections,
     may_fail: bool,
@@ -55,14 +55,7 @@ pub(super) fn case_name(attributes: &Attributes) -> String {
 
 impl Reader {
     pub fn new(cases: &[ListedCase]) -> Self {
-        Self {
-            report: XmlReport::new(ROOT),
-            running: RunningCases::new(cases),
-            case: None,
-            is_ignored: false,
-            check: Expression::default(),
-            is_crash: false,
-        }
+        Self { report: XmlReport::new(ROOT), running: RunningCases::new(cases), ..Self::default() }
     }
 
     fn start(&mut self, name: &str, attributes: &Attributes, cases: &mut CaseReporter<'_>) {
@@ -134,11 +127,7 @@ impl Reader {
             sections: Sections::start_case(start, cases),
             may_fail: is_set("may_fail"),
             should_fail: is_set("should_fail"),
-            held: Vec::new(),
-            has_failure: false,
-            is_success: false,
-            expected_failures: String::new(),
-            has_died: false,
+            ..RunningCase::default()
         });
         let description = attributes.get("description");
         if !description.is_empty() {

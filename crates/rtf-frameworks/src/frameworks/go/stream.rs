@@ -52,7 +52,7 @@ struct RunningTest {
 }
 
 /// Reads the stream of one process.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Reader {
     dir: PathBuf,
     starts: HashMap<String, StartedCase>,
@@ -67,15 +67,9 @@ pub(super) struct Reader {
 impl Reader {
     pub fn new(dir: &Path, cases: &[ListedCase]) -> Self {
         let starts = cases.iter().map(|case| (case.name.clone(), case.start())).collect();
-        Self {
-            // Stack traces have no symbolic links.
-            dir: dir.canonicalize().unwrap_or_else(|_| dir.to_owned()),
-            starts,
-            line: Vec::new(),
-            running: HashMap::new(),
-            started: 0,
-            crash: None,
-        }
+        // Stack traces have no symbolic links.
+        let dir = dir.canonicalize().unwrap_or_else(|_| dir.to_owned());
+        Self { dir, starts, ..Self::default() }
     }
 
     fn carry_out(&mut self, event: Event, cases: &mut CaseReporter<'_>) {

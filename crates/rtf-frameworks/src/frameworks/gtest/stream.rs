@@ -37,7 +37,7 @@ const OTHER_EVENTS: [&str; 6] = [
 ];
 
 /// The reader of one process.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Reader {
     report: PathBuf,
     /// Whether the report decides which tests were skipped, not the output.
@@ -102,21 +102,8 @@ enum Known {
 
 impl Reader {
     pub fn new(cases: &[ListedCase], report: PathBuf, report_decides: bool) -> Self {
-        Self {
-            report,
-            report_decides,
-            starts: cases.iter().map(|case| (case.name.clone(), case.start())).collect(),
-            line: Vec::new(),
-            queue: VecDeque::new(),
-            suite: String::new(),
-            running: None,
-            output: String::new(),
-            pieces: Utf8Pieces::default(),
-            programs: 0,
-            marks: HashMap::new(),
-            unsure_marks: HashMap::new(),
-            skipped: HashSet::new(),
-        }
+        let starts = cases.iter().map(|case| (case.name.clone(), case.start())).collect();
+        Self { report, report_decides, starts, ..Self::default() }
     }
 
     /// Carries out the queued events up to one whose verdict is unknown.

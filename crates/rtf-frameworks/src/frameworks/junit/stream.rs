@@ -25,7 +25,7 @@ struct Element {
 }
 
 /// Reads the events of one process.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Reader {
     events: TestEvents,
     elements: HashMap<String, Element>,
@@ -108,14 +108,10 @@ impl Reader {
     pub fn new(cases: &[ListedCase], classes: &Path, output: &Path) -> Self {
         let selected = cases.iter().filter_map(|case| Some((case.id.clone()?, case.start())));
         Self {
-            events: TestEvents::default(),
-            elements: HashMap::new(),
             selected: selected.collect(),
-            names: Names::default(),
             classes: classes.to_owned(),
             output: output.to_owned(),
-            has_events: false,
-            crash: None,
+            ..Self::default()
         }
     }
 
@@ -166,10 +162,7 @@ impl Reader {
                 let path = self.output.join(path);
                 let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
                 let path = path.to_string_lossy().into_owned();
-                cases.attach(
-                    case,
-                    File { name, path, media_type, case: None, picture: None, omitted: false },
-                );
+                cases.attach(case, File { name, path, media_type, ..File::default() });
             }
         }
     }
@@ -263,10 +256,7 @@ impl ReportReader for Reader {
             self.crash = crash(&text);
             let (name, media_type) = ("hs_err.log".to_owned(), "text/plain".to_owned());
             let path = log.to_string_lossy().into_owned();
-            cases.attach(
-                None,
-                File { name, path, media_type, case: None, picture: None, omitted: false },
-            );
+            cases.attach(None, File { name, path, media_type, ..File::default() });
         }
         let has_exited = matches!(end, ExitStatus::Code(_)) && cases.innermost().is_none();
         let is_complete = self.events.is_complete();
