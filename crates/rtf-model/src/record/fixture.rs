@@ -45,7 +45,7 @@ pub struct FixtureLife {
 }
 
 /// The state and history of one fixture.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct FixtureRecord {
     /// How it was planned.
     pub plan: FixturePlanned,
@@ -77,21 +77,7 @@ pub struct FixtureRecord {
 
 impl FixtureRecord {
     pub(super) fn new(plan: FixturePlanned) -> Self {
-        Self {
-            plan,
-            state: FixtureState::Pending,
-            starts: 0,
-            started: None,
-            ready: None,
-            values: Vec::new(),
-            lives: Vec::new(),
-            collapses: Vec::new(),
-            broken: None,
-            problems: Vec::new(),
-            log_tail: Vec::new(),
-            messages: Vec::new(),
-            leaked: Vec::new(),
-        }
+        Self { plan, ..Self::default() }
     }
 
     pub(super) fn apply(&mut self, at: Micros, kind: &EventKind) {

@@ -32,13 +32,8 @@ pub(super) fn suite(index: u32) -> SuiteRecord {
     SuiteRecord::new(SuitePlanned {
         suite: SuiteId(index),
         name: format!("unknown-suite-{index}"),
-        file: String::new(),
-        description: String::new(),
-        environment: String::new(),
-        tolerates_collapse: false,
-        skips_fail: false,
         parallel: 1,
-        requires: Vec::new(),
+        ..SuitePlanned::default()
     })
 }
 
@@ -47,30 +42,25 @@ pub(super) fn fixture(index: u32, suite: SuiteId) -> FixtureRecord {
         fixture: FixtureId(index),
         suite,
         name: format!("unknown-fixture-{index}"),
-        plugin_type: String::new(),
+        ..FixturePlanned::default()
     })
 }
 
 pub(super) fn hook(index: u32, suite: SuiteId) -> HookRecord {
-    let (hook, on) = (HookId(index), Vec::new());
-    HookRecord::new(HookPlanned { hook, suite, name: format!("unknown-hook-{index}"), on })
+    HookRecord::new(HookPlanned {
+        hook: HookId(index),
+        suite,
+        name: format!("unknown-hook-{index}"),
+        ..HookPlanned::default()
+    })
 }
 
 pub(super) fn test(index: u32, suite: SuiteId) -> TestRecord {
     TestRecord::new(TestPlanned {
-        learned: Vec::new(),
         test: TestId(index),
         suite,
         name: format!("unknown-test-{index}"),
-        plugin_type: String::new(),
-        plugin: String::new(),
         repetitions: 1,
-        timed: false,
-        tags: Vec::new(),
-        parameters: Vec::new(),
-        plugin_hash: None,
-        source_hash: None,
-        was: None,
-        expected: None,
+        ..TestPlanned::default()
     })
 }

@@ -25,7 +25,7 @@ pub struct TestRecord {
 }
 
 /// The state of one attempt of a test.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct AttemptRecord {
     /// The repetition, from 1.
     pub repetition: u32,
@@ -100,8 +100,13 @@ impl TestRecord {
     ) {
         match kind {
             EventKind::TestStarted { repetition, attempt, .. } => {
-                let attempt = AttemptRecord::new(*repetition, *attempt, at);
-                self.attempts.push(AttemptRecord { lean, ..attempt });
+                self.attempts.push(AttemptRecord {
+                    repetition: *repetition,
+                    attempt: *attempt,
+                    started: at,
+                    lean,
+                    ..AttemptRecord::default()
+                });
             }
             EventKind::TestSkipped { reason, .. } => self.skipped = Some(reason.clone()),
             EventKind::TestRepeated { repetitions, .. } => {
@@ -229,32 +234,6 @@ impl AttemptRecord {
 
     /// Maximum number of faults that are kept in memory.
     pub const FAULTS_KEPT: usize = 1000;
-
-    fn new(repetition: u32, attempt: u32, started: Micros) -> Self {
-        Self {
-            repetition,
-            attempt,
-            started,
-            phases: Vec::new(),
-            finished: None,
-            messages: Vec::new(),
-            messages_omitted: 0,
-            counts: AttemptCounts::default(),
-            cases: AttemptCases::default(),
-            measurements: Vec::new(),
-            series: Vec::new(),
-            questions: Vec::new(),
-            faults: Vec::new(),
-            attachments: Vec::new(),
-            output: String::new(),
-            stacks: Vec::new(),
-            leaked: Vec::new(),
-            slow: false,
-            stopped: false,
-            kept: [0; 4],
-            lean: false,
-        }
-    }
 
     fn apply(&mut self, at: Micros, kind: &EventKind) {
         self.counts.count(kind);
