@@ -7,25 +7,29 @@ use crate::{
 };
 
 /// In a larger gap, the number itself is taken to be damaged.
-const LARGEST: usize = 1000;
+const LARGEST: u32 = 1000;
 
 /// Whether the plans between the expected and the actual number may have
 /// been lost.
 pub(crate) fn is_likely(expected: u32, actual: u32) -> bool {
-    actual.checked_sub(expected).is_some_and(|missing| missing as usize <= LARGEST)
+    actual.checked_sub(expected).is_some_and(|missing| missing <= LARGEST)
 }
 
-/// Extends `list` to `index` entries; false when the next entry
-/// does not fit there.
-pub(super) fn fill<T>(list: &mut Vec<T>, index: usize, missing: impl Fn(u32) -> T) -> bool {
-    if index < list.len() || index - list.len() > LARGEST {
-        return false;
+/// Adds an entry with this id after those that are missing. Returns the new ids: none when the
+/// entry does not fit there.
+pub(super) fn add<T>(
+    list: &mut Vec<T>,
+    id: u32,
+    entry: T,
+    missing: impl Fn(u32) -> T,
+) -> std::ops::Range<u32> {
+    let known = list.len() as u32;
+    if !is_likely(known, id) {
+        return 0..0;
     }
-    while list.len() < index {
-        let Ok(number) = u32::try_from(list.len()) else { return false };
-        list.push(missing(number));
-    }
-    true
+    list.extend((known..id).map(missing));
+    list.push(entry);
+    known..id.saturating_add(1)
 }
 
 pub(super) fn suite(index: u32) -> SuiteRecord {

@@ -140,10 +140,7 @@ impl TestRecord {
 
     /// The attempts that count: the last one of each repetition.
     pub fn deciding_attempts(&self) -> impl Iterator<Item = &AttemptRecord> {
-        let next = self.attempts.iter().skip(1).map(Some).chain([None]);
-        self.attempts.iter().zip(next).filter_map(|(attempt, next)| {
-            next.is_none_or(|next| next.repetition != attempt.repetition).then_some(attempt)
-        })
+        deciding(&self.attempts)
     }
 
     /// The attempt that explains the verdict: the first deciding attempt that did
@@ -228,6 +225,12 @@ impl TestRecord {
     }
 }
 
+/// The last attempt of each repetition.
+pub(super) fn deciding(attempts: &[AttemptRecord]) -> impl Iterator<Item = &AttemptRecord> {
+    let repetitions = attempts.chunk_by(|one, next| one.repetition == next.repetition);
+    repetitions.filter_map(<[_]>::last)
+}
+
 impl AttemptRecord {
     /// Maximum number of messages of each kind that are kept in memory.
     pub const MESSAGES_KEPT: u32 = 1000;
@@ -255,12 +258,7 @@ impl AttemptRecord {
                 lasting.into_iter().for_each(|it| it.removed = Some(at));
             }
             EventKind::Attached { attachment, .. } => self.attachments.push(attachment.clone()),
-            EventKind::Output(output) => {
-                if output.omitted_bytes > 0 {
-                    self.output += &format!("\n[… {} bytes left out …]\n", output.omitted_bytes);
-                }
-                self.output += &output.text;
-            }
+            EventKind::Output(output) => output.append_to(&mut self.output),
             EventKind::CasesPlanned { names, .. } => self.cases.plan(names),
             EventKind::CaseStarted(started) => self.cases.start(at, &started.start),
             EventKind::QuestionAsked(asked) => {
