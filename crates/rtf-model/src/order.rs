@@ -9,7 +9,7 @@ mod progress;
 mod questions;
 mod shared_hosts;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use crate::{Event, EventKind, FixtureId, HookId, Phase, Source, SuiteId, TestId};
 use concurrency::Concurrency;
@@ -234,21 +234,14 @@ impl OrderChecker {
         ensure(fixture.index() == self.fixtures.len(), || {
             format!("fixture {fixture} out of order")
         })?;
-        let stage = FixtureStage::Stopped;
-        self.fixtures.push(FixtureProgress {
-            suite,
-            stage,
-            attempt: 0,
-            broken: false,
-            provided: BTreeSet::new(),
-        });
+        self.fixtures.push(FixtureProgress { suite, ..FixtureProgress::default() });
         Ok(())
     }
 
     fn plan_test(&mut self, test: TestId, suite: SuiteId, repetitions: Option<u32>) -> Rule {
         self.is_current_suite(suite)?;
         ensure(test.index() == self.tests.len(), || format!("test {test} out of order"))?;
-        self.tests.push(TestProgress::new(suite, repetitions));
+        self.tests.push(TestProgress { suite, repetitions, ..TestProgress::default() });
         Ok(())
     }
 

@@ -5,7 +5,6 @@ use crate::expression::{Leaf, Line, Part};
 use crate::function::{Function, Knot};
 use crate::judgement::SignalValue;
 use crate::samples::Samples;
-use crate::syntax::Span;
 
 /// Which function of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +26,7 @@ pub(crate) enum Extension {
 /// A comparison with its samples.
 #[derive(Clone, Debug)]
 pub(crate) struct Atom {
-    comparison: Comparison,
+    pub comparison: Comparison,
     slots: Vec<Samples>,
     /// The slot of each leaf.
     places: Vec<usize>,
@@ -36,7 +35,8 @@ pub(crate) struct Atom {
     is_linear: bool,
     /// The functions up to the progress; `None` before the start of the trace.
     functions: Option<[Function; 2]>,
-    knots: u64,
+    /// How many knots were computed since the start.
+    pub knots: u64,
     /// Reused memory.
     lines: Vec<Line>,
     parts: Vec<Part>,
@@ -47,7 +47,7 @@ impl Atom {
         let mut slots: Vec<Samples> = Vec::new();
         let mut places = Vec::new();
         for leaf in &comparison.leaves {
-            let known = slots.iter().position(|slot| slot.signal() == leaf.signal);
+            let known = slots.iter().position(|slot| slot.signal == leaf.signal);
             places.push(known.unwrap_or(slots.len()));
             if known.is_none() {
                 slots.push(Samples::new(leaf.signal));
@@ -67,16 +67,8 @@ impl Atom {
         }
     }
 
-    pub(crate) fn span(&self) -> Span {
-        self.comparison.span.clone()
-    }
-
-    pub(crate) fn polarity(&self) -> f64 {
-        self.comparison.polarity
-    }
-
     pub(crate) fn has_signal(&self, signal: usize) -> bool {
-        self.slots.iter().any(|slot| slot.signal() == signal)
+        self.slots.iter().any(|slot| slot.signal == signal)
     }
 
     /// Up to which time it is known. A comparison of constants is always known.
@@ -86,11 +78,6 @@ impl Atom {
             None => f64::NEG_INFINITY,
             Some([margin, _]) => margin.to(),
         }
-    }
-
-    /// How many knots were computed since the start.
-    pub(crate) fn knots(&self) -> u64 {
-        self.knots
     }
 
     /// How many times its truth changes in what is kept.
@@ -113,7 +100,7 @@ impl Atom {
     /// Starts the trace, with the last sample of each signal that is not after `start`.
     pub(crate) fn begin(&mut self, start: f64, samples: &dyn Fn(usize) -> (f64, f64)) {
         for slot in &mut self.slots {
-            slot.push(samples(slot.signal()));
+            slot.push(samples(slot.signal));
         }
         if self.slots.is_empty() {
             let value = self.comparison.expression.value(&[]);
@@ -127,7 +114,7 @@ impl Atom {
     /// Takes a sample, later than the previous one of its signal. Returns whether the truth changes.
     pub(crate) fn sample(&mut self, start: f64, signal: usize, sample: (f64, f64)) -> bool {
         for slot in &mut self.slots {
-            if slot.signal() == signal {
+            if slot.signal == signal {
                 slot.push(sample);
             }
         }

@@ -29,12 +29,12 @@ enum Scope {
 #[derive(Clone, Debug)]
 pub(crate) struct Component {
     scope: Scope,
-    program: Program,
+    pub program: Program,
     horizon: f64,
-    atoms: Vec<Atom>,
+    pub atoms: Vec<Atom>,
     /// 1, or -1 if it is negated as a part of the formula.
-    polarity: f64,
-    start: f64,
+    pub polarity: f64,
+    pub start: f64,
     /// Up to which time its operand is judged.
     done: f64,
     /// The least or greatest value up to then, of the margin and the truth.
@@ -75,8 +75,8 @@ impl Component {
         let program = Program::new(operand, polarity);
         let atoms = program.comparisons.iter().cloned().map(Atom::new).collect();
         let neutral = match scope {
-            Scope::Unbounded(Quantifier::Some, _) => f64::NEG_INFINITY,
-            _ => f64::INFINITY,
+            Scope::Unbounded(quantifier, _) => quantifier.neutral(),
+            Scope::Start => f64::INFINITY,
         };
         Self {
             scope,
@@ -212,11 +212,7 @@ impl Component {
     }
 
     fn collect(&self, quantifier: Quantifier, kind: Kind, function: &Function) -> f64 {
-        let collected = self.collected[index(kind)];
-        match quantifier {
-            Quantifier::All => collected.min(function.minimum().1),
-            Quantifier::Some => collected.max(function.maximum().1),
-        }
+        quantifier.combine(self.collected[index(kind)], function.extreme(quantifier).1)
     }
 
     /// Judges what is complete, and forgets the samples that are not necessary any more, if there
@@ -243,7 +239,7 @@ impl Component {
             }
             Scope::Start => {}
             Scope::Unbounded(quantifier, _) => {
-                let knots: u64 = self.atoms.iter().map(Atom::knots).sum();
+                let knots: u64 = self.atoms.iter().map(|atom| atom.knots).sum();
                 let is_long = to - self.done >= self.horizon + self.program.reach;
                 if knots - self.judged_knots >= MIN_KNOTS && is_long && to > self.done {
                     self.judged_knots = knots;
@@ -289,24 +285,8 @@ impl Component {
         }
     }
 
-    pub(crate) fn program(&self) -> &Program {
-        &self.program
-    }
-
-    pub(crate) fn atoms(&self) -> &[Atom] {
-        &self.atoms
-    }
-
-    pub(crate) fn polarity(&self) -> f64 {
-        self.polarity
-    }
-
     pub(crate) fn is_at_start(&self) -> bool {
         self.scope == Scope::Start
-    }
-
-    pub(crate) fn start(&self) -> f64 {
-        self.start
     }
 }
 

@@ -53,10 +53,8 @@ impl Evaluation<'_> {
             Node::Constant(value) => Function::constant(from, to, *value),
             Node::Not(inner) => self.function(inner, begin, to).negated(),
             Node::Junction(quantifier, parts) => {
-                let combine = if *quantifier == Quantifier::All { least } else { greatest };
-                let functions: Vec<_> =
-                    parts.iter().map(|part| self.function(part, begin, to)).collect();
-                let combined = functions.into_iter().reduce(|left, right| combine(&left, &right));
+                let functions = parts.iter().map(|part| self.function(part, begin, to));
+                let combined = functions.reduce(|left, right| combine(*quantifier)(&left, &right));
                 combined.unwrap_or_else(|| Function::constant(from, to, f64::INFINITY))
             }
             Node::Window(temporal, quantifier, inner) => {
@@ -78,9 +76,9 @@ impl Evaluation<'_> {
         match self.mode {
             Mode::Judged { .. } => None,
             Mode::Complete { sign, .. } => {
-                Some(Extension::Value(sign * atom.polarity() * f64::INFINITY))
+                Some(Extension::Value(sign * atom.comparison.polarity * f64::INFINITY))
             }
-            Mode::Online { .. } => Some(Extension::Value(atom.polarity() * f64::INFINITY)),
+            Mode::Online { .. } => Some(Extension::Value(atom.comparison.polarity * f64::INFINITY)),
             Mode::Settled { .. } => Some(Extension::Unchanged),
         }
     }
@@ -125,8 +123,7 @@ impl Evaluation<'_> {
         let interval = temporal.interval;
         if temporal.tense == Tense::Past {
             if to - interval.from < self.start {
-                let sign = if quantifier == Quantifier::Some { 1.0 } else { -1.0 };
-                return Function::constant(from, to, f64::NEG_INFINITY * sign);
+                return Function::constant(from, to, quantifier.neutral());
             }
             return self.past_window(temporal, quantifier, inner, (begin, to));
         }
@@ -180,27 +177,15 @@ impl Evaluation<'_> {
         let value = self.memories[memory];
         let inner_begin = if value.is_some() { begin - interval.from } else { f64::NEG_INFINITY };
         let function = self.function(inner, inner_begin, end);
-        let earlier = value.unwrap_or(if quantifier == Quantifier::Some {
-            f64::NEG_INFINITY
-        } else {
-            f64::INFINITY
-        });
+        let earlier = value.unwrap_or(quantifier.neutral());
         self.remember(memory, begin - interval.from, |time| {
             let part = function.slice(function.from(), time);
-            match quantifier {
-                Quantifier::All => part.minimum().1.min(earlier),
-                Quantifier::Some => part.maximum().1.max(earlier),
-            }
+            quantifier.combine(part.extreme(quantifier).1, earlier)
         });
         let reach = (to - function.from()).max(interval.from) + 1.0;
         let bounds = Bounds { start: -reach, end: -interval.from, from, to };
         let function = extremum(function, quantifier, bounds);
-        let earlier = Function::constant(from, to, earlier);
-        if quantifier == Quantifier::All {
-            least(&function, &earlier)
-        } else {
-            greatest(&function, &earlier)
-        }
+        combine(quantifier)(&function, &Function::constant(from, to, earlier))
     }
 
     /// `until` or `since` with a bounded interval.
@@ -307,6 +292,11 @@ impl Evaluation<'_> {
         }
         least(&after, &before.negated())
     }
+}
+
+/// What joins conditions.
+fn combine(quantifier: Quantifier) -> fn(&Function, &Function) -> Function {
+    if quantifier == Quantifier::All { least } else { greatest }
 }
 
 fn extremum(function: Function, quantifier: Quantifier, bounds: Bounds) -> Function {

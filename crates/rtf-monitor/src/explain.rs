@@ -37,40 +37,40 @@ pub(crate) fn component(shape: &Shape, value: &dyn Fn(usize) -> f64) -> usize {
 }
 
 pub(crate) fn cause(component: &Component, mode: Mode, now: f64) -> Cause {
-    let sign = component.polarity();
+    let sign = component.polarity;
     let oriented = |kind: Kind| {
         let function = component.function(kind, mode, now);
         let function =
-            function.unwrap_or_else(|| Function::constant(component.start(), now, f64::INFINITY));
+            function.unwrap_or_else(|| Function::constant(component.start, now, f64::INFINITY));
         if sign > 0.0 { function } else { function.negated() }
     };
     let truth = oriented(Kind::Truth);
     let violated = truth.negative_around(truth.minimum().0);
     let margin = oriented(Kind::Margin).slice(violated.0, violated.1);
     let time = margin.minimum().0;
-    let kept = component.atoms().iter().map(|atom| atom.kept_from(component.start()));
-    let memories = vec![None; component.program().memories];
+    let kept = component.atoms.iter().map(|atom| atom.kept_from(component.start));
+    let memories = vec![None; component.program.memories];
     let mut search = Search {
         evaluation: Evaluation {
-            start: kept.fold(component.start(), f64::max),
+            start: kept.fold(component.start, f64::max),
             memories: &memories,
             ..component.evaluation(Kind::Margin, mode)
         },
         now,
     };
-    let found = search.responsible(&component.program().node, time);
+    let found = search.responsible(&component.program.node, time);
     let Some((index, at)) = found else {
         return Cause { interval: violated, span: None, values: Vec::new() };
     };
-    let atom = &component.atoms()[index];
+    let atom = &component.atoms[index];
     let interval = if component.is_at_start() {
         let truth = atom.function(Kind::Truth, (search.evaluation.start, now.max(at)), None, false);
-        let truth = if atom.polarity() > 0.0 { truth } else { truth.negated() };
+        let truth = if atom.comparison.polarity > 0.0 { truth } else { truth.negated() };
         truth.negative_around(at)
     } else {
         violated
     };
-    Cause { interval, span: Some(atom.span()), values: atom.values(at) }
+    Cause { interval, span: Some(atom.comparison.span.clone()), values: atom.values(at) }
 }
 
 struct Search<'a> {
@@ -92,11 +92,7 @@ impl Search<'_> {
             Node::Window(temporal, quantifier, inner) => {
                 let (from, to) = self.range(temporal, time);
                 let function = self.evaluation.function(inner, from, to);
-                let (at, _) = match quantifier {
-                    Quantifier::All => function.minimum(),
-                    Quantifier::Some => function.maximum(),
-                };
-                self.responsible(inner, at)
+                self.responsible(inner, function.extreme(*quantifier).0)
             }
             Node::UpTo(temporal, sides) => {
                 let (from, to) = self.range(temporal, time);

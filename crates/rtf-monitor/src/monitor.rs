@@ -247,7 +247,7 @@ impl Monitor {
             }
             let possible = |index: usize| {
                 let component = &self.components[index];
-                let polarity = component.polarity();
+                let polarity = component.polarity;
                 if component.is_decided { -polarity } else { polarity }
             };
             if self.shape.combine(&possible) < 0.0 {

@@ -7,7 +7,8 @@ use crate::function::interpolate;
 /// The samples of a signal that are kept, and the current one.
 #[derive(Clone, Debug)]
 pub(crate) struct Samples {
-    signal: usize,
+    /// The index of the signal in the formula.
+    pub signal: usize,
     /// Times in seconds and values. The first one may be before the start of the trace.
     samples: VecDeque<(f64, f64)>,
     /// The last sample that has been passed.
@@ -17,11 +18,6 @@ pub(crate) struct Samples {
 impl Samples {
     pub(crate) fn new(signal: usize) -> Self {
         Self { signal, samples: VecDeque::new(), current: 0 }
-    }
-
-    /// The index of the signal in the formula.
-    pub(crate) fn signal(&self) -> usize {
-        self.signal
     }
 
     pub(crate) fn push(&mut self, sample: (f64, f64)) {

@@ -41,10 +41,7 @@ impl Shape {
             Self::Not(inner) => -inner.combine(value),
             Self::Junction(quantifier, parts) => {
                 let values = parts.iter().map(|part| part.combine(value));
-                match quantifier {
-                    Quantifier::All => values.fold(f64::INFINITY, f64::min),
-                    Quantifier::Some => values.fold(f64::NEG_INFINITY, f64::max),
-                }
+                values.fold(quantifier.neutral(), |left, right| quantifier.combine(left, right))
             }
         }
     }

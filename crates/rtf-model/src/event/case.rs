@@ -15,7 +15,7 @@ pub struct Parameter {
 }
 
 /// A case of a test starts, as its host announces it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CaseStart {
     /// The case: 1 for the first one of an attempt, and one more for each further one.
@@ -43,9 +43,7 @@ impl CaseStart {
     /// A top-level case of which only the name is known.
     #[must_use]
     pub fn new(case: CaseId, name: String) -> Self {
-        let (parent, location, earlier_attempts) = (None, None, 0);
-        let (parameters, tags) = (Vec::new(), Vec::new());
-        Self { case, name, parent, parameters, tags, location, earlier_attempts }
+        Self { case, name, ..Self::default() }
     }
 }
 

@@ -43,7 +43,7 @@ impl RunStarted {
 }
 
 /// A suite that will be run.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SuitePlanned {
     /// The suite.
@@ -74,7 +74,7 @@ pub struct SuitePlanned {
 }
 
 /// A fixture that will be set up.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FixturePlanned {
     /// The fixture.
@@ -88,7 +88,7 @@ pub struct FixturePlanned {
 }
 
 /// A hook, which brings the robot into a safe state.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HookPlanned {
     /// The hook.
@@ -152,7 +152,7 @@ impl std::fmt::Display for Trigger {
 }
 
 /// A test that will be run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TestPlanned {
     /// The test.

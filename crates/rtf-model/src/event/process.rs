@@ -43,6 +43,16 @@ pub struct Output {
     pub text: String,
 }
 
+impl Output {
+    /// Appends the piece to those before it.
+    pub(crate) fn append_to(&self, output: &mut String) {
+        if self.omitted_bytes > 0 {
+            *output += &format!("\n[… {} bytes left out …]\n", self.omitted_bytes);
+        }
+        *output += &self.text;
+    }
+}
+
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it with a reference")]
 fn is_zero(number: &u64) -> bool {
     *number == 0

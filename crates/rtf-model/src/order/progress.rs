@@ -23,8 +23,9 @@ pub(super) enum SuiteStage {
     Closed,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum FixtureStage {
+    #[default]
     Stopped,
     Starting,
     Ready,
@@ -32,7 +33,7 @@ pub(super) enum FixtureStage {
     Stopping,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct FixtureProgress {
     pub suite: SuiteId,
     pub stage: FixtureStage,
@@ -42,7 +43,7 @@ pub(super) struct FixtureProgress {
     pub provided: BTreeSet<String>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct TestProgress {
     pub suite: SuiteId,
     /// At most so many; `None` when it is repeated for a time.
@@ -63,24 +64,6 @@ pub(super) struct TestProgress {
 }
 
 impl TestProgress {
-    pub fn new(suite: SuiteId, repetitions: Option<u32>) -> Self {
-        let (open, judged, rerun, ended) = (false, false, false, false);
-        let (cases, open_questions) = (CaseProgress::default(), BTreeSet::new());
-        let faults = BTreeSet::new();
-        Self {
-            faults,
-            suite,
-            repetitions,
-            open,
-            judged,
-            last: None,
-            rerun,
-            ended,
-            cases,
-            open_questions,
-        }
-    }
-
     /// Whether its verdict is final.
     pub fn is_decided(&self) -> bool {
         let all_done = self.last.is_some_and(|(r, _)| Some(r) == self.repetitions);

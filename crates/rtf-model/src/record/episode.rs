@@ -1,5 +1,6 @@
 //! The episodes of a campaign, and their results.
 
+use super::test::deciding;
 use super::{AttemptRecord, Record, TestRecord};
 use crate::{Episode, EpisodeStarted, EventKind, Measurement, Micros, SuiteId, TestId, Verdict};
 
@@ -79,13 +80,11 @@ impl Record {
 
     fn before_episode(&self, suite: SuiteId) -> Option<Before> {
         let suite = self.suites.get(suite.index())?;
-        let tests = suite.tests.iter().filter_map(|id| self.tests.get(id.index()));
-        let fixtures = suite.fixtures.iter().filter_map(|id| self.fixtures.get(id.index()));
-        let hooks = suite.hooks.iter().filter_map(|id| self.hooks.get(id.index()));
+        let fixtures = self.fixtures_of(suite);
         Some(Before {
-            attempts: tests.map(|test| test.attempts.len()).collect(),
+            attempts: self.tests_of(suite).map(|test| test.attempts.len()).collect(),
             fixtures: fixtures.map(|it| (it.collapses.len(), it.problems.len())).collect(),
-            hooks: hooks.map(|hook| hook.problems().count()).collect(),
+            hooks: self.hooks_of(suite).map(|hook| hook.problems().count()).collect(),
         })
     }
 
@@ -102,16 +101,18 @@ impl Record {
 
     /// The worst that happened since `before`: a collapse, an error, a failure.
     fn episode_outcome(&self, suite: SuiteId, before: &Before) -> (EpisodeOutcome, Option<String>) {
-        let mut problems = self.fixture_problems_since(suite, before);
         let Some(suite) = self.suites.get(suite.index()) else {
             return (EpisodeOutcome::Error, None);
         };
-        let hooks = suite.hooks.iter().filter_map(|id| self.hooks.get(id.index()));
-        for (hook, known) in hooks.zip(&before.hooks) {
+        let mut problems = Vec::new();
+        for (fixture, known) in self.fixtures_of(suite).zip(&before.fixtures) {
+            problems.extend(fixture.problems_since(*known, suite.plan.tolerates_collapse));
+        }
+        for (hook, known) in self.hooks_of(suite).zip(&before.hooks) {
             problems.extend(hook.problems().skip(*known).map(|text| (EpisodeOutcome::Error, text)));
         }
-        let tests = suite.tests.iter().filter_map(|id| self.tests.get(id.index()));
-        let parts = tests.zip(&before.attempts).map(|(test, first)| test.since(*first));
+        let tests = self.tests_of(suite).zip(&before.attempts);
+        let parts = tests.map(|(test, first)| test.since(*first));
         let (ran, missing): (Vec<_>, Vec<_>) = parts.partition(TestRecord::is_complete_round);
         let failed = |part: &TestRecord| self.problem_of(part);
         let count = problems.len();
@@ -132,20 +133,16 @@ impl Record {
     pub fn episode_measurements(&self, suite: SuiteId) -> Vec<(&TestRecord, &Measurement)> {
         let Some(suite) = self.suites.get(suite.index()) else { return Vec::new() };
         let Some(episode) = suite.episodes.last() else { return Vec::new() };
-        let tests = suite.tests.iter().filter_map(|id| self.tests.get(id.index()));
-        let mut found = Vec::new();
-        for (test, first) in tests.zip(&episode.before.attempts) {
+        let tests = self.tests_of(suite).zip(&episode.before.attempts);
+        let attempts = tests.flat_map(|(test, first)| {
             let attempts = test.attempts.get(*first..).unwrap_or_default();
-            for (attempt, next) in
-                attempts.iter().zip(attempts.iter().skip(1).map(Some).chain([None]))
-            {
-                if next.is_none_or(|next| next.repetition != attempt.repetition) {
-                    let own = attempt.measurements.iter().filter(|it| it.case.is_none());
-                    found.extend(own.map(|measurement| (test, measurement)));
-                }
-            }
-        }
-        found
+            deciding(attempts).map(move |attempt| (test, attempt))
+        });
+        let measurements = attempts.flat_map(|(test, attempt)| {
+            let own = attempt.measurements.iter().filter(|it| it.case.is_none());
+            own.map(move |measurement| (test, measurement))
+        });
+        measurements.collect()
     }
 
     /// The test because of which the newest episode of a suite did not pass: the first one with the
@@ -154,10 +151,9 @@ impl Record {
     pub fn episode_problem(&self, suite: SuiteId) -> Option<ProblemTest> {
         let suite = self.suites.get(suite.index())?;
         let episode = suite.episodes.last()?;
-        let tests = suite.tests.iter().filter_map(|id| self.tests.get(id.index()));
-        let parts = tests.zip(&episode.before.attempts).map(|(test, first)| (test, *first));
-        let problems = parts.filter_map(|(test, first)| {
-            let part = test.since(first);
+        let tests = self.tests_of(suite).zip(&episode.before.attempts);
+        let problems = tests.filter_map(|(test, first)| {
+            let part = test.since(*first);
             let (outcome, _) = self.problem_of(&part)?;
             let is_problem =
                 |attempt: &AttemptRecord| attempt.verdict().is_some_and(Verdict::is_problem);
@@ -168,32 +164,6 @@ impl Record {
         });
         let problems: Vec<_> = problems.collect();
         problems.into_iter().rev().max_by_key(|(severity, _)| *severity).map(|(_, it)| it)
-    }
-
-    fn fixture_problems_since(
-        &self,
-        suite: SuiteId,
-        before: &Before,
-    ) -> Vec<(EpisodeOutcome, String)> {
-        let Some(suite) = self.suites.get(suite.index()) else { return Vec::new() };
-        let fixtures = suite.fixtures.iter().filter_map(|id| self.fixtures.get(id.index()));
-        let mut problems = Vec::new();
-        for (fixture, (collapses, others)) in fixtures.zip(&before.fixtures) {
-            let name = &fixture.plan.name;
-            if let Some(reason) = &fixture.broken {
-                let text = format!("fixture `{name}` is broken: {reason}");
-                problems.push((EpisodeOutcome::Collapsed, text));
-            }
-            let tolerated = suite.plan.tolerates_collapse;
-            for (_, reason) in fixture.collapses.iter().skip(*collapses).filter(|_| !tolerated) {
-                let text = format!("fixture `{name}` collapsed: {reason}");
-                problems.push((EpisodeOutcome::Collapsed, text));
-            }
-            for (_, problem) in fixture.problems.iter().skip(*others) {
-                problems.push((EpisodeOutcome::Error, format!("fixture `{name}`: {problem}")));
-            }
-        }
-        problems
     }
 
     /// Why the attempts of a test in an episode are not green.

@@ -1,5 +1,6 @@
 //! The state and history of one fixture.
 
+use super::EpisodeOutcome;
 use crate::{
     EventKind, FixturePlanned, FixtureProvided, Growth, LeakedProcess, Message, MessageKind,
     Micros, UsageSeries,
@@ -45,7 +46,7 @@ pub struct FixtureLife {
 }
 
 /// The state and history of one fixture.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct FixtureRecord {
     /// How it was planned.
     pub plan: FixturePlanned,
@@ -77,21 +78,7 @@ pub struct FixtureRecord {
 
 impl FixtureRecord {
     pub(super) fn new(plan: FixturePlanned) -> Self {
-        Self {
-            plan,
-            state: FixtureState::Pending,
-            starts: 0,
-            started: None,
-            ready: None,
-            values: Vec::new(),
-            lives: Vec::new(),
-            collapses: Vec::new(),
-            broken: None,
-            problems: Vec::new(),
-            log_tail: Vec::new(),
-            messages: Vec::new(),
-            leaked: Vec::new(),
-        }
+        Self { plan, ..Self::default() }
     }
 
     pub(super) fn apply(&mut self, at: Micros, kind: &EventKind) {
@@ -171,19 +158,29 @@ impl FixtureRecord {
     /// The reasons why the suite is not green.
     #[must_use]
     pub fn problems(&self, tolerates_collapse: bool) -> Vec<String> {
+        let problems = self.problems_since((0, 0), tolerates_collapse);
+        problems.into_iter().map(|(_, text)| text).collect()
+    }
+
+    /// The same after this many collapses and other problems, with their results for an episode.
+    pub(super) fn problems_since(
+        &self,
+        (collapses, others): (usize, usize),
+        tolerates_collapse: bool,
+    ) -> Vec<(EpisodeOutcome, String)> {
         let name = &self.plan.name;
         let mut problems = Vec::new();
         if let Some(reason) = &self.broken {
-            problems.push(format!("fixture `{name}` is broken: {reason}"));
+            let text = format!("fixture `{name}` is broken: {reason}");
+            problems.push((EpisodeOutcome::Collapsed, text));
         }
-        if !tolerates_collapse {
-            for (_, reason) in &self.collapses {
-                problems.push(format!("fixture `{name}` collapsed: {reason}"));
-            }
+        for (_, reason) in self.collapses.iter().skip(collapses).filter(|_| !tolerates_collapse) {
+            let text = format!("fixture `{name}` collapsed: {reason}");
+            problems.push((EpisodeOutcome::Collapsed, text));
         }
-        for (_, problem) in &self.problems {
+        for (_, problem) in self.problems.iter().skip(others) {
             if self.broken.as_ref() != Some(problem) {
-                problems.push(format!("fixture `{name}`: {problem}"));
+                problems.push((EpisodeOutcome::Error, format!("fixture `{name}`: {problem}")));
             }
         }
         problems

@@ -9,8 +9,7 @@ impl Record {
     #[must_use]
     pub fn suite_problems(&self, suite: SuiteId) -> Vec<String> {
         let mut problems = self.fixture_problems(suite);
-        let hooks = self.suites.get(suite.index()).map_or(&[][..], |s| &s.hooks);
-        let hooks = hooks.iter().filter_map(|id| self.hooks.get(id.index()));
+        let hooks = self.suites.get(suite.index()).into_iter().flat_map(|it| self.hooks_of(it));
         problems.extend(hooks.flat_map(HookRecord::problems));
         problems
     }
@@ -20,8 +19,7 @@ impl Record {
     pub fn fixture_problems(&self, suite: SuiteId) -> Vec<String> {
         let Some(suite) = self.suites.get(suite.index()) else { return Vec::new() };
         let tolerant = suite.plan.tolerates_collapse;
-        let fixtures = suite.fixtures.iter().filter_map(|id| self.fixtures.get(id.index()));
-        fixtures.flat_map(|fixture| fixture.problems(tolerant)).collect()
+        self.fixtures_of(suite).flat_map(|fixture| fixture.problems(tolerant)).collect()
     }
 
     /// Whether there is no problem with the robot or the bench: the run

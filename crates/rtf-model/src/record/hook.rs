@@ -82,12 +82,7 @@ impl HookRunRecord {
                     self.messages.push(message.clone());
                 }
             }
-            EventKind::Output(output) => {
-                if output.omitted_bytes > 0 {
-                    self.output += &format!("\n[… {} bytes left out …]\n", output.omitted_bytes);
-                }
-                self.output += &output.text;
-            }
+            EventKind::Output(output) => output.append_to(&mut self.output),
             EventKind::StackDumped { text, .. } => self.stacks.push(text.clone()),
             EventKind::ProcessesLeaked { processes, .. } => {
                 self.leaked.extend_from_slice(processes)

@@ -7,38 +7,37 @@ use crate::{
 };
 
 /// In a larger gap, the number itself is taken to be damaged.
-const LARGEST: usize = 1000;
+const LARGEST: u32 = 1000;
 
 /// Whether the plans between the expected and the actual number may have
 /// been lost.
 pub(crate) fn is_likely(expected: u32, actual: u32) -> bool {
-    actual.checked_sub(expected).is_some_and(|missing| missing as usize <= LARGEST)
+    actual.checked_sub(expected).is_some_and(|missing| missing <= LARGEST)
 }
 
-/// Extends `list` to `index` entries; false when the next entry
-/// does not fit there.
-pub(super) fn fill<T>(list: &mut Vec<T>, index: usize, missing: impl Fn(u32) -> T) -> bool {
-    if index < list.len() || index - list.len() > LARGEST {
-        return false;
+/// Adds an entry with this id after those that are missing. Returns the new ids: none when the
+/// entry does not fit there.
+pub(super) fn add<T>(
+    list: &mut Vec<T>,
+    id: u32,
+    entry: T,
+    missing: impl Fn(u32) -> T,
+) -> std::ops::Range<u32> {
+    let known = list.len() as u32;
+    if !is_likely(known, id) {
+        return 0..0;
     }
-    while list.len() < index {
-        let Ok(number) = u32::try_from(list.len()) else { return false };
-        list.push(missing(number));
-    }
-    true
+    list.extend((known..id).map(missing));
+    list.push(entry);
+    known..id.saturating_add(1)
 }
 
 pub(super) fn suite(index: u32) -> SuiteRecord {
     SuiteRecord::new(SuitePlanned {
         suite: SuiteId(index),
         name: format!("unknown-suite-{index}"),
-        file: String::new(),
-        description: String::new(),
-        environment: String::new(),
-        tolerates_collapse: false,
-        skips_fail: false,
         parallel: 1,
-        requires: Vec::new(),
+        ..SuitePlanned::default()
     })
 }
 
@@ -47,30 +46,25 @@ pub(super) fn fixture(index: u32, suite: SuiteId) -> FixtureRecord {
         fixture: FixtureId(index),
         suite,
         name: format!("unknown-fixture-{index}"),
-        plugin_type: String::new(),
+        ..FixturePlanned::default()
     })
 }
 
 pub(super) fn hook(index: u32, suite: SuiteId) -> HookRecord {
-    let (hook, on) = (HookId(index), Vec::new());
-    HookRecord::new(HookPlanned { hook, suite, name: format!("unknown-hook-{index}"), on })
+    HookRecord::new(HookPlanned {
+        hook: HookId(index),
+        suite,
+        name: format!("unknown-hook-{index}"),
+        ..HookPlanned::default()
+    })
 }
 
 pub(super) fn test(index: u32, suite: SuiteId) -> TestRecord {
     TestRecord::new(TestPlanned {
-        learned: Vec::new(),
         test: TestId(index),
         suite,
         name: format!("unknown-test-{index}"),
-        plugin_type: String::new(),
-        plugin: String::new(),
         repetitions: 1,
-        timed: false,
-        tags: Vec::new(),
-        parameters: Vec::new(),
-        plugin_hash: None,
-        source_hash: None,
-        was: None,
-        expected: None,
+        ..TestPlanned::default()
     })
 }

@@ -161,36 +161,26 @@ impl Record {
     fn apply_plan(&mut self, kind: &EventKind) -> bool {
         match kind {
             EventKind::SuitePlanned(plan) => {
-                if missing_plans::fill(&mut self.suites, plan.suite.index(), missing_plans::suite) {
-                    self.suites.push(SuiteRecord::new(plan.clone()));
-                }
+                let record = SuiteRecord::new(plan.clone());
+                missing_plans::add(&mut self.suites, plan.suite.0, record, missing_plans::suite);
             }
             EventKind::FixturePlanned(plan) => {
                 let missing = |index| missing_plans::fixture(index, plan.suite);
-                let known = self.fixtures.len() as u32;
-                if missing_plans::fill(&mut self.fixtures, plan.fixture.index(), missing) {
-                    let ids = (known..=plan.fixture.0).map(FixtureId);
-                    self.suite(plan.suite, |s| s.fixtures.extend(ids));
-                    self.fixtures.push(FixtureRecord::new(plan.clone()));
-                }
+                let record = FixtureRecord::new(plan.clone());
+                let ids = missing_plans::add(&mut self.fixtures, plan.fixture.0, record, missing);
+                self.suite(plan.suite, |s| s.fixtures.extend(ids.map(FixtureId)));
             }
             EventKind::HookPlanned(plan) => {
                 let missing = |index| missing_plans::hook(index, plan.suite);
-                let known = self.hooks.len() as u32;
-                if missing_plans::fill(&mut self.hooks, plan.hook.index(), missing) {
-                    let ids = (known..=plan.hook.0).map(HookId);
-                    self.suite(plan.suite, |s| s.hooks.extend(ids));
-                    self.hooks.push(HookRecord::new(plan.clone()));
-                }
+                let record = HookRecord::new(plan.clone());
+                let ids = missing_plans::add(&mut self.hooks, plan.hook.0, record, missing);
+                self.suite(plan.suite, |s| s.hooks.extend(ids.map(HookId)));
             }
             EventKind::TestPlanned(plan) => {
                 let missing = |index| missing_plans::test(index, plan.suite);
-                let known = self.tests.len() as u32;
-                if missing_plans::fill(&mut self.tests, plan.test.index(), missing) {
-                    let ids = (known..=plan.test.0).map(TestId);
-                    self.suite(plan.suite, |s| s.tests.extend(ids));
-                    self.tests.push(TestRecord::new(plan.clone()));
-                }
+                let record = TestRecord::new(plan.clone());
+                let ids = missing_plans::add(&mut self.tests, plan.test.0, record, missing);
+                self.suite(plan.suite, |s| s.tests.extend(ids.map(TestId)));
             }
             _ => return false,
         }
@@ -229,6 +219,19 @@ impl Record {
             }
             None => {}
         }
+    }
+
+    /// The tests of a suite, in the order of the plan.
+    fn tests_of(&self, suite: &SuiteRecord) -> impl Iterator<Item = &TestRecord> {
+        suite.tests.iter().filter_map(|id| self.tests.get(id.index()))
+    }
+
+    fn fixtures_of(&self, suite: &SuiteRecord) -> impl Iterator<Item = &FixtureRecord> {
+        suite.fixtures.iter().filter_map(|id| self.fixtures.get(id.index()))
+    }
+
+    fn hooks_of(&self, suite: &SuiteRecord) -> impl Iterator<Item = &HookRecord> {
+        suite.hooks.iter().filter_map(|id| self.hooks.get(id.index()))
     }
 
     fn suite(&mut self, id: SuiteId, change: impl FnOnce(&mut SuiteRecord)) {
@@ -296,8 +299,7 @@ impl Record {
     /// Number of tests of a suite by state.
     #[must_use]
     pub fn suite_totals(&self, suite: SuiteId) -> TestTotals {
-        let tests = self.suites.get(suite.index()).map_or(&[][..], |s| &s.tests);
-        totals(tests.iter().filter_map(|id| self.tests.get(id.index())))
+        totals(self.suites.get(suite.index()).into_iter().flat_map(|suite| self.tests_of(suite)))
     }
 
     /// Number of tests by final verdict in a run that has ended: none is pending or

@@ -3,7 +3,7 @@
 use crate::{Location, Micros, Samples, format_rounded};
 
 /// Statistics of a signal that an attempt sampled. The samples are in the journal.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SignalSummary {
     /// The signal.
     pub name: String,
@@ -44,20 +44,10 @@ impl SignalSummary {
         let first = samples.points.first().map_or(0.0, |(at, _)| *at);
         let mut series = Self {
             name: samples.name.clone(),
-            unit: String::new(),
-            low: None,
-            high: None,
             location: samples.location.clone(),
-            count: 0,
             since: samples.since,
             span: (first, first),
-            min: None,
-            mean: None,
-            max: None,
-            last: None,
-            outside: 0,
-            problem: None,
-            finite: 0,
+            ..Self::default()
         };
         series.extend(samples);
         series

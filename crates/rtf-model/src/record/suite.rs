@@ -5,7 +5,7 @@ use super::host::{self, HostRecord};
 use crate::{FixtureId, Growth, HookId, Micros, SuitePlanned, SuitePrepared, TestId};
 
 /// The state of one suite.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct SuiteRecord {
     /// How it was planned.
     pub plan: SuitePlanned,
@@ -29,17 +29,7 @@ pub struct SuiteRecord {
 
 impl SuiteRecord {
     pub(super) fn new(plan: SuitePlanned) -> Self {
-        Self {
-            plan,
-            fixtures: Vec::new(),
-            hooks: Vec::new(),
-            tests: Vec::new(),
-            hosts: Vec::new(),
-            episodes: Vec::new(),
-            prepared: None,
-            started: None,
-            finished: None,
-        }
+        Self { plan, ..Self::default() }
     }
 
     /// The shared hosts whose resources grew. Of several hosts that served the

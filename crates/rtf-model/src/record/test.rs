@@ -25,7 +25,7 @@ pub struct TestRecord {
 }
 
 /// The state of one attempt of a test.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct AttemptRecord {
     /// The repetition, from 1.
     pub repetition: u32,
@@ -100,8 +100,13 @@ impl TestRecord {
     ) {
         match kind {
             EventKind::TestStarted { repetition, attempt, .. } => {
-                let attempt = AttemptRecord::new(*repetition, *attempt, at);
-                self.attempts.push(AttemptRecord { lean, ..attempt });
+                self.attempts.push(AttemptRecord {
+                    repetition: *repetition,
+                    attempt: *attempt,
+                    started: at,
+                    lean,
+                    ..AttemptRecord::default()
+                });
             }
             EventKind::TestSkipped { reason, .. } => self.skipped = Some(reason.clone()),
             EventKind::TestRepeated { repetitions, .. } => {
@@ -135,10 +140,7 @@ impl TestRecord {
 
     /// The attempts that count: the last one of each repetition.
     pub fn deciding_attempts(&self) -> impl Iterator<Item = &AttemptRecord> {
-        let next = self.attempts.iter().skip(1).map(Some).chain([None]);
-        self.attempts.iter().zip(next).filter_map(|(attempt, next)| {
-            next.is_none_or(|next| next.repetition != attempt.repetition).then_some(attempt)
-        })
+        deciding(&self.attempts)
     }
 
     /// The attempt that explains the verdict: the first deciding attempt that did
@@ -223,38 +225,18 @@ impl TestRecord {
     }
 }
 
+/// The last attempt of each repetition.
+pub(super) fn deciding(attempts: &[AttemptRecord]) -> impl Iterator<Item = &AttemptRecord> {
+    let repetitions = attempts.chunk_by(|one, next| one.repetition == next.repetition);
+    repetitions.filter_map(<[_]>::last)
+}
+
 impl AttemptRecord {
     /// Maximum number of messages of each kind that are kept in memory.
     pub const MESSAGES_KEPT: u32 = 1000;
 
     /// Maximum number of faults that are kept in memory.
     pub const FAULTS_KEPT: usize = 1000;
-
-    fn new(repetition: u32, attempt: u32, started: Micros) -> Self {
-        Self {
-            repetition,
-            attempt,
-            started,
-            phases: Vec::new(),
-            finished: None,
-            messages: Vec::new(),
-            messages_omitted: 0,
-            counts: AttemptCounts::default(),
-            cases: AttemptCases::default(),
-            measurements: Vec::new(),
-            series: Vec::new(),
-            questions: Vec::new(),
-            faults: Vec::new(),
-            attachments: Vec::new(),
-            output: String::new(),
-            stacks: Vec::new(),
-            leaked: Vec::new(),
-            slow: false,
-            stopped: false,
-            kept: [0; 4],
-            lean: false,
-        }
-    }
 
     fn apply(&mut self, at: Micros, kind: &EventKind) {
         self.counts.count(kind);
@@ -276,12 +258,7 @@ impl AttemptRecord {
                 lasting.into_iter().for_each(|it| it.removed = Some(at));
             }
             EventKind::Attached { attachment, .. } => self.attachments.push(attachment.clone()),
-            EventKind::Output(output) => {
-                if output.omitted_bytes > 0 {
-                    self.output += &format!("\n[… {} bytes left out …]\n", output.omitted_bytes);
-                }
-                self.output += &output.text;
-            }
+            EventKind::Output(output) => output.append_to(&mut self.output),
             EventKind::CasesPlanned { names, .. } => self.cases.plan(names),
             EventKind::CaseStarted(started) => self.cases.start(at, &started.start),
             EventKind::QuestionAsked(asked) => {

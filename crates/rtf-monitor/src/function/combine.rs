@@ -1,5 +1,6 @@
 //! The least and greatest of two functions.
 
+use super::columns::{Column, Columns};
 use super::{Function, Knot};
 
 /// The least of two functions on the same interval.
@@ -18,25 +19,17 @@ struct Merge<'a> {
     functions: [&'a Function; 2],
 }
 
-/// The knots of both functions at a time, some of which are within lines.
-struct Column {
-    time: f64,
-    knots: [Knot; 2],
-    /// Whether the functions have a knot here.
-    own: [bool; 2],
-}
-
 impl Merge<'_> {
     fn run(&self) -> Function {
-        let mut next = [0, 0];
-        let first = self.column(&mut next);
+        let mut columns = Columns::new(self.functions);
+        let first = columns.advance();
         let mut active = self.lower(first.knots.map(|knot| knot.right), 0);
         let mut result = Function::starting(self.knot(&first));
         let mut previous = first;
         // The last knot, if it was within the line of the lower function.
         let mut omitted = None;
-        while self.has_next(next) {
-            let column = self.column(&mut next);
+        while columns.has_next() {
+            let column = columns.advance();
             let start = previous.knots.map(|knot| knot.right);
             let end = column.knots.map(|knot| knot.left);
             let before = self.lower(start, active);
@@ -61,7 +54,7 @@ impl Merge<'_> {
                 && !is_bend
                 && !column.own[after]
                 && self.lower(column.knots.map(|knot| knot.at), after) == after;
-            if is_within && self.has_next(next) {
+            if is_within && columns.has_next() {
                 omitted = Some(self.knot(&column));
             } else {
                 omitted = None;
@@ -71,35 +64,6 @@ impl Merge<'_> {
             previous = column;
         }
         result
-    }
-
-    fn has_next(&self, next: [usize; 2]) -> bool {
-        (0..2).any(|index| next[index] < self.functions[index].knots.len())
-    }
-
-    /// The next time at which a function has a knot.
-    fn column(&self, next: &mut [usize; 2]) -> Column {
-        let time_of = |index: usize| {
-            self.functions[index].knots.get(next[index]).map_or(f64::INFINITY, |knot| knot.time)
-        };
-        let time = time_of(0).min(time_of(1));
-        let own = [time_of(0) <= time, time_of(1) <= time];
-        let knots = [0, 1].map(|index| {
-            let function = self.functions[index];
-            if own[index] {
-                function.knots[next[index]]
-            } else if next[index] == 0 {
-                Knot { time, ..function.knots[0] }
-            } else if next[index] >= function.knots.len() {
-                Knot { time, ..function.knots[function.knots.len() - 1] }
-            } else {
-                Knot::flat(time, function.between(next[index] - 1, time))
-            }
-        });
-        for index in 0..2 {
-            next[index] += usize::from(own[index]);
-        }
-        Column { time, knots, own }
     }
 
     /// The index of the lower value; `tied` if they are equal.

@@ -1,5 +1,6 @@
 //! Piecewise-linear functions of time with jumps and single points: the robustness of a formula.
 
+mod columns;
 mod combine;
 mod up_to;
 mod window;
@@ -7,6 +8,8 @@ mod window;
 pub(crate) use combine::{greatest, least};
 pub(crate) use up_to::{since, until};
 pub(crate) use window::{Bounds, supremum};
+
+use crate::syntax::Quantifier;
 
 /// A time at which a function may change its slope or jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -211,6 +214,14 @@ impl Function {
     pub(crate) fn maximum(&self) -> (f64, f64) {
         let most = self.values().reduce(|most, next| if next.1 > most.1 { next } else { most });
         most.unwrap_or((self.from(), f64::NEG_INFINITY))
+    }
+
+    /// The infimum for [`Quantifier::All`], otherwise the supremum, with its time.
+    pub(crate) fn extreme(&self, quantifier: Quantifier) -> (f64, f64) {
+        match quantifier {
+            Quantifier::All => self.minimum(),
+            Quantifier::Some => self.maximum(),
+        }
     }
 
     /// The interval with negative values or limits that contains a time.

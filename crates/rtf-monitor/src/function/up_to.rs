@@ -3,13 +3,18 @@
 //! From the end backwards: on a line of both operands, the result is the median-like combination of
 //! three lines, whose kinks are where two of them cross.
 
+use super::columns::{Column, Columns};
 use super::{Function, Knot, crossing, interpolate};
 
 /// `condition until goal` on their common interval. `end` is the value of the result directly after
 /// the interval.
 pub(crate) fn until(condition: &Function, goal: &Function, end: f64) -> Function {
     // The knots are collected from the last to the first, on the negative time.
-    let columns = columns(condition, goal);
+    let mut remaining = Columns::new([condition, goal]);
+    let mut columns = Vec::with_capacity(condition.knots.len() + goal.knots.len());
+    while remaining.has_next() {
+        columns.push(remaining.advance());
+    }
     let last = columns.len() - 1;
     let mut value = at(&columns[last], end);
     let knot = Knot { time: -columns[last].time, left: end, at: value, right: value };
@@ -17,8 +22,8 @@ pub(crate) fn until(condition: &Function, goal: &Function, end: f64) -> Function
     for index in (0..last).rev() {
         let (near, far) = (&columns[index], &columns[index + 1]);
         let piece = Piece {
-            condition: [near.condition.right, far.condition.left],
-            goal: [near.goal.right, far.goal.left],
+            condition: [near.knots[0].right, far.knots[0].left],
+            goal: [near.knots[1].right, far.knots[1].left],
             after: value,
         };
         let duration = far.time - near.time;
@@ -41,16 +46,10 @@ pub(crate) fn since(condition: &Function, goal: &Function, before: f64) -> Funct
     until(&condition.clone().reversed(), &goal.clone().reversed(), before).reversed()
 }
 
-/// Both functions at a time.
-struct Column {
-    time: f64,
-    condition: Knot,
-    goal: Knot,
-}
-
 /// The value at a knot, if `after` is the limit of the result from the right.
 fn at(column: &Column, after: f64) -> f64 {
-    column.goal.at.max(after).min(column.condition.at)
+    let [condition, goal] = &column.knots;
+    goal.at.max(after).min(condition.at)
 }
 
 /// The functions between two knots.
@@ -106,32 +105,4 @@ fn bends(lines: &[[f64; 2]; 3]) -> [f64; 3] {
         .map(|(left, right)| crossing(left, right).unwrap_or(0.0));
     bends.sort_unstable_by(|left, right| right.total_cmp(left));
     bends
-}
-
-/// All times at which a function has a knot.
-fn columns(condition: &Function, goal: &Function) -> Vec<Column> {
-    let mut columns = Vec::with_capacity(condition.knots.len() + goal.knots.len());
-    let mut next = [0, 0];
-    let time_of = |function: &Function, index: usize| {
-        function.knots.get(index).map_or(f64::INFINITY, |knot| knot.time)
-    };
-    while next[0] < condition.knots.len() || next[1] < goal.knots.len() {
-        let time = time_of(condition, next[0]).min(time_of(goal, next[1]));
-        let [left, right] = [condition, goal].map(|function| function.knots.as_slice());
-        let knot = |function: &Function, knots: &[Knot], next: &mut usize| {
-            if time_of(function, *next) <= time {
-                *next += 1;
-                knots[*next - 1]
-            } else if *next > 0 && *next < knots.len() {
-                Knot::flat(time, function.between(*next - 1, time))
-            } else {
-                // The intervals are the same, apart from rounding.
-                Knot { time, ..knots[(*next).min(knots.len() - 1)] }
-            }
-        };
-        let condition = knot(condition, left, &mut next[0]);
-        let goal = knot(goal, right, &mut next[1]);
-        columns.push(Column { time, condition, goal });
-    }
-    columns
 }

@@ -56,6 +56,24 @@ pub(crate) enum Quantifier {
     Some,
 }
 
+impl Quantifier {
+    /// The value of a window without any time.
+    pub(crate) fn neutral(self) -> f64 {
+        match self {
+            Self::All => f64::INFINITY,
+            Self::Some => f64::NEG_INFINITY,
+        }
+    }
+
+    /// The value of two times.
+    pub(crate) fn combine(self, left: f64, right: f64) -> f64 {
+        match self {
+            Self::All => left.min(right),
+            Self::Some => left.max(right),
+        }
+    }
+}
+
 /// An expression with a number as its value.
 #[derive(Clone, Debug)]
 pub(crate) enum Number {

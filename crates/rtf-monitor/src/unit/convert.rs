@@ -1,7 +1,7 @@
 //! Checks units, and converts the operands of comparisons, sums, `min` and `max` to one unit.
 
 use super::{Unit, UnitError};
-use crate::syntax::{Arithmetic, Condition, Number, Span};
+use crate::syntax::{Arithmetic, Condition, Number};
 
 /// The unit of an expression.
 #[derive(Clone, Debug)]
@@ -12,12 +12,6 @@ enum Quantity {
     Unknown,
     /// That of a pure number is empty.
     Known(Unit),
-}
-
-/// An expression with its unit.
-struct Converted {
-    number: Number,
-    quantity: Quantity,
 }
 
 /// Converts a condition. `units` has the unit of each signal.
@@ -44,13 +38,7 @@ impl Converter {
     fn condition(&mut self, condition: &mut Condition) {
         match condition {
             Condition::Comparison { sides, .. } => {
-                let [left, right] = sides.as_ref();
-                let mut parts = vec![self.number(left), self.number(right)];
-                self.unify(&mut parts);
-                let mut numbers = parts.into_iter().map(|part| part.number);
-                if let (Some(left), Some(right)) = (numbers.next(), numbers.next()) {
-                    **sides = [left, right];
-                }
+                self.unify(sides.as_mut_slice());
             }
             Condition::Constant(..) | Condition::Truth { .. } => {}
             Condition::Not(inner, _)
@@ -69,92 +57,56 @@ impl Converter {
         }
     }
 
-    fn number(&mut self, number: &Number) -> Converted {
+    /// Converts the parts of a number, and returns its unit.
+    fn number(&mut self, number: &mut Number) -> Quantity {
         match number {
-            Number::Literal { value, unit, span } => {
-                let quantity = unit
-                    .as_deref()
-                    .map_or(Quantity::Constant, |unit| Quantity::Known(Unit::parse(unit)));
-                let number = Number::Literal { value: *value, unit: None, span: span.clone() };
-                Converted { number, quantity }
-            }
+            Number::Literal { unit, .. } => match unit.take() {
+                Some(unit) => Quantity::Known(Unit::parse(&unit)),
+                None => Quantity::Constant,
+            },
             Number::Signal { index, .. } | Number::Hold { index, .. } => {
                 let unit = self.units.get(*index).cloned().flatten();
-                let quantity = unit.map_or(Quantity::Unknown, Quantity::Known);
-                Converted { number: number.clone(), quantity }
+                unit.map_or(Quantity::Unknown, Quantity::Known)
             }
-            Number::Rate { inner, span } => {
-                let inner = self.number(inner);
-                let quantity = match inner.quantity {
-                    Quantity::Known(unit) => Quantity::Known(unit.times(&Unit::parse("s"), -1)),
-                    Quantity::Constant => Quantity::Known(Unit::parse("1/s")),
-                    Quantity::Unknown => Quantity::Unknown,
-                };
-                let number = Number::Rate { inner: Box::new(inner.number), span: span.clone() };
-                Converted { number, quantity }
-            }
-            Number::Negative { inner, span } => {
-                let Converted { number, quantity } = self.number(inner);
-                let number = Number::Negative { inner: Box::new(number), span: span.clone() };
-                Converted { number, quantity }
-            }
-            Number::Absolute { inner, span } => {
-                let Converted { number, quantity } = self.number(inner);
-                let number = Number::Absolute { inner: Box::new(number), span: span.clone() };
-                Converted { number, quantity }
-            }
-            Number::Extreme { which, parts, span } => {
-                let mut parts: Vec<_> = parts.iter().map(|part| self.number(part)).collect();
-                let quantity = self.unify(&mut parts);
-                let parts = parts.into_iter().map(|part| part.number).collect();
-                Converted {
-                    number: Number::Extreme { which: *which, parts, span: span.clone() },
-                    quantity,
+            Number::Rate { inner, .. } => match self.number(inner) {
+                Quantity::Known(unit) => Quantity::Known(unit.times(&Unit::parse("s"), -1)),
+                Quantity::Constant => Quantity::Known(Unit::parse("1/s")),
+                Quantity::Unknown => Quantity::Unknown,
+            },
+            Number::Negative { inner, .. } | Number::Absolute { inner, .. } => self.number(inner),
+            Number::Extreme { parts, .. } => self.unify(parts),
+            Number::Operation { operation, sides, .. } => match operation {
+                Arithmetic::Add | Arithmetic::Subtract => self.unify(sides.as_mut_slice()),
+                Arithmetic::Multiply | Arithmetic::Divide => {
+                    let exponent = if *operation == Arithmetic::Multiply { 1 } else { -1 };
+                    let [left, right] = sides.each_mut().map(|side| self.number(side));
+                    product(&left, &right, exponent)
                 }
-            }
-            Number::Operation { operation, sides, span } => self.operation(*operation, sides, span),
+            },
         }
     }
 
-    fn operation(&mut self, operation: Arithmetic, sides: &[Number; 2], span: &Span) -> Converted {
-        let mut left = self.number(&sides[0]);
-        let mut right = self.number(&sides[1]);
-        let quantity = if let Arithmetic::Add | Arithmetic::Subtract = operation {
-            let mut parts = vec![left, right];
-            let quantity = self.unify(&mut parts);
-            right = parts.swap_remove(1);
-            left = parts.swap_remove(0);
-            quantity
-        } else {
-            let exponent = if operation == Arithmetic::Multiply { 1 } else { -1 };
-            product(&left.quantity, &right.quantity, exponent)
-        };
-        let sides = Box::new([left.number, right.number]);
-        Converted { number: Number::Operation { operation, sides, span: span.clone() }, quantity }
-    }
-
     /// Converts all to the unit of the first that has a signal, or of the first with a unit.
-    fn unify(&mut self, parts: &mut [Converted]) -> Quantity {
-        let is_known = |part: &&Converted| matches!(part.quantity, Quantity::Known(_));
-        let target = parts
-            .iter()
-            .filter(is_known)
-            .find(|part| has_signal(&part.number))
-            .or_else(|| parts.iter().find(is_known));
-        let Some((target, place)) = target.and_then(|target| match &target.quantity {
-            Quantity::Known(unit) => Some((unit.clone(), target.number.span())),
-            _ => None,
-        }) else {
-            let unknown = parts.iter().any(|part| matches!(part.quantity, Quantity::Unknown));
-            return if unknown { Quantity::Unknown } else { Quantity::Constant };
+    fn unify(&mut self, numbers: &mut [Number]) -> Quantity {
+        let quantities: Vec<_> = numbers.iter_mut().map(|number| self.number(number)).collect();
+        let known = || {
+            let parts = numbers.iter().zip(&quantities);
+            parts.filter_map(|(number, quantity)| match quantity {
+                Quantity::Known(unit) => Some((number, unit)),
+                Quantity::Constant | Quantity::Unknown => None,
+            })
         };
-        let unknown = parts.iter().find(|part| matches!(part.quantity, Quantity::Unknown));
-        let unknown = unknown.map(|part| part.number.span());
-        for part in parts.iter_mut() {
-            let Quantity::Known(unit) = &part.quantity else { continue };
-            if unknown.is_some() && !has_signal(&part.number) {
+        let with_signal = known().find(|(number, _)| has_signal(number));
+        let target = with_signal.or_else(|| known().next()).map(|(_, unit)| unit.clone());
+        let is_unknown = quantities.iter().any(|it| matches!(it, Quantity::Unknown));
+        let Some(target) = target else {
+            return if is_unknown { Quantity::Unknown } else { Quantity::Constant };
+        };
+        for (number, quantity) in numbers.iter_mut().zip(&quantities) {
+            let Quantity::Known(unit) = quantity else { continue };
+            if is_unknown && !has_signal(number) {
                 self.errors.push(UnitError {
-                    range: part.number.span(),
+                    range: number.span(),
                     message: format!(
                         "`{}` cannot be converted: the unit of the signal is not known",
                         unit.text
@@ -164,16 +116,14 @@ impl Converter {
                     ),
                 });
             } else if unit.is_compatible(&target) {
-                scale(&mut part.number, unit.scale / target.scale);
+                scale(number, unit.scale / target.scale);
             } else {
                 let message =
                     format!("the units do not match: {} and {}", name(&target), name(unit));
-                let earlier = place == part.number.span();
-                let range = if earlier { place.clone() } else { part.number.span() };
-                self.errors.push(UnitError { range, message, hint: None });
+                self.errors.push(UnitError { range: number.span(), message, hint: None });
             }
         }
-        if unknown.is_some() { Quantity::Unknown } else { Quantity::Known(target) }
+        if is_unknown { Quantity::Unknown } else { Quantity::Known(target) }
     }
 }
 
