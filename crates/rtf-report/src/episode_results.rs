@@ -92,10 +92,6 @@ impl Reporter for EpisodeResults {
             _ => Ok(()),
         }
     }
-
-    fn finish(&mut self, _: &Record) -> Result<(), ReportError> {
-        Ok(())
-    }
 }
 
 fn last(record: &Record, suite: SuiteId) -> Option<EpisodeLine> {
