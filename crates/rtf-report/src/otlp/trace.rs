@@ -5,6 +5,7 @@ use rtf_model::{Micros, RunStarted};
 use serde_json::{Value, json};
 
 use super::attributes::Attributes;
+use crate::fnv;
 
 /// More events of a span are counted: collectors and their stores limit the size of a span.
 const EVENTS: usize = 128;
@@ -107,12 +108,9 @@ fn trace_id(run: &RunStarted) -> String {
     let origin = run.manifest.origin.as_ref().map_or("", |origin| origin.id.as_str());
     let digits: String = origin.chars().filter(char::is_ascii_hexdigit).collect();
     let is_valid = digits.len() == 32 && digits.bytes().any(|digit| digit != b'0');
-    if is_valid { digits.to_ascii_lowercase() } else { format!("{:032x}", hash(&run.run)) }
-}
-
-/// FNV-1a with 128 bits.
-fn hash(text: &str) -> u128 {
-    const BASIS: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
-    const PRIME: u128 = 0x0000_0000_0100_0000_0000_0000_0000_013b;
-    text.bytes().fold(BASIS, |hash, byte| (hash ^ u128::from(byte)).wrapping_mul(PRIME))
+    if is_valid {
+        digits.to_ascii_lowercase()
+    } else {
+        format!("{:032x}", fnv::hash(run.run.as_bytes()))
+    }
 }
