@@ -14,7 +14,7 @@ mod time;
 use std::io::{self, Write};
 use std::path::Path;
 
-use quick_junit::{Report, TestCase, TestSuite};
+use quick_junit::{Report, TestCase, TestCaseStatus, TestSuite};
 use rtf_model::{LeakedProcess, Record, SuiteRecord};
 
 use crate::growth::{self, Within};
@@ -93,6 +93,23 @@ fn properties(junit: &mut TestSuite, record: &Record, suite: &SuiteRecord) {
             junit.add_property((escape::line(&name), escape::line(&value)));
         }
     }
+}
+
+/// A status with its type, message and description.
+fn described(
+    mut status: TestCaseStatus,
+    kind: &str,
+    message: &str,
+    description: String,
+) -> TestCaseStatus {
+    status.set_message(text(message));
+    status.set_type(kind);
+    status.set_description(description);
+    status
+}
+
+fn first_line(text: &str) -> &str {
+    text.lines().next().unwrap_or_default()
 }
 
 /// Text that XML can hold and that means no harm: control characters are

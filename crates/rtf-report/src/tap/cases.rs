@@ -6,7 +6,7 @@ use rtf_model::{Record, TestRecord, Verdict};
 use super::syntax::{SUBTEST, description};
 use super::yaml::Yaml;
 use crate::cases::{CaseResult, TestCases};
-use crate::explain::{self, Extent};
+use crate::explain::{self, Extent, Sink};
 use crate::{known_failure, words};
 
 /// Cases that are nested more deeply are written at this depth, with their paths.
@@ -120,10 +120,8 @@ impl Subtests<'_> {
         if let Some(location) = self.cases.locations(case).next() {
             yaml.place(&location.file, location.line);
         }
-        let mut lines = Vec::new();
-        let sink = &mut |_, line: &str| lines.push(line.to_owned());
-        explain::case(self.cases, case, Extent::ALL, sink);
-        yaml.lines("details", lines);
+        let explained = |sink: Sink<'_>| explain::case(self.cases, case, Extent::ALL, sink);
+        yaml.lines("details", explain::lines(explained));
         yaml.end();
     }
 }

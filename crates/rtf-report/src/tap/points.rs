@@ -79,9 +79,10 @@ fn explained(yaml: &mut Yaml<'_>, test: &TestRecord, verdict: Verdict) {
     if test.plan.is_repeated() {
         yaml.number("repetition", f64::from(attempt.repetition));
     }
-    let mut lines = Vec::new();
-    explain::explain(attempt, Extent::ALL, &mut |_, line| lines.push(line.to_owned()));
-    explain::left(&attempt.leaked, &mut |_, line| lines.push(line.to_owned()));
+    let lines = explain::lines(|sink| {
+        explain::explain(attempt, Extent::ALL, sink);
+        explain::left(&attempt.leaked, sink);
+    });
     yaml.lines("details", lines);
     let (tail, total) = words::tail(&attempt.output, OUTPUT_LINES);
     let cut = (total > OUTPUT_LINES).then(|| format!("… the last {OUTPUT_LINES} of {total} lines"));
