@@ -47,14 +47,8 @@ pub fn attempt_log(record: &Record, id: TestId, number: (u32, u32)) -> PathBuf {
     path(name, attempt)
 }
 
-/// The log of the newest start of a fixture, relative to the run's directory:
+/// The log of one start of a fixture, counted from 1, relative to the run's directory:
 /// `logs/arm.fixture-simulator.a2.log`.
-#[must_use]
-pub fn fixture_log(record: &Record, id: FixtureId) -> PathBuf {
-    fixture_start_log(record, id, record.fixture(id).map_or(1, |fixture| fixture.starts))
-}
-
-/// The log of one start of a fixture, counted from 1, relative to the run's directory.
 #[must_use]
 pub fn fixture_start_log(record: &Record, id: FixtureId, start: u32) -> PathBuf {
     let Some(fixture) = record.fixture(id) else {
@@ -65,15 +59,8 @@ pub fn fixture_start_log(record: &Record, id: FixtureId, start: u32) -> PathBuf 
     path(base(suite, &name, false, &format!("f{id}")), start)
 }
 
-/// The log of the newest run of a hook, relative to the run's directory:
+/// The log of one run of a hook, counted from 1, relative to the run's directory:
 /// `logs/arm.hook-park.a2.log`.
-#[must_use]
-pub fn hook_log(record: &Record, id: HookId) -> PathBuf {
-    let runs = record.hooks.get(id.index()).map_or(1, |hook| hook.runs.len());
-    hook_run_log(record, id, runs)
-}
-
-/// The log of one run of a hook, counted from 1, relative to the run's directory.
 #[must_use]
 pub fn hook_run_log(record: &Record, id: HookId, run: usize) -> PathBuf {
     let Some(hook) = record.hooks.get(id.index()) else {
@@ -85,14 +72,18 @@ pub fn hook_run_log(record: &Record, id: HookId, run: usize) -> PathBuf {
     path(base(suite, &name, false, &format!("h{id}")), run)
 }
 
-/// The log of the newest attempt, start or run of a source, see [`test_log`],
-/// [`fixture_log`] and [`hook_log`].
+/// The log of the newest attempt, start or run of a source.
 #[must_use]
 pub fn log(record: &Record, source: Source) -> PathBuf {
     match source {
         Source::Test(id) => test_log(record, id),
-        Source::Fixture(id) => fixture_log(record, id),
-        Source::Hook(id) => hook_log(record, id),
+        Source::Fixture(id) => {
+            fixture_start_log(record, id, record.fixture(id).map_or(1, |fixture| fixture.starts))
+        }
+        Source::Hook(id) => {
+            let runs = record.hooks.get(id.index()).map_or(1, |hook| hook.runs.len());
+            hook_run_log(record, id, runs)
+        }
     }
 }
 

@@ -14,7 +14,7 @@ use rtf_model::{
 };
 
 pub(crate) use source::{CaseSource, sources};
-pub(crate) use totals::CaseTotals;
+pub(crate) use totals::{CaseTotals, describe as describe_counts};
 
 /// The reason of a case that was running when the run ended.
 const CUT_SHORT: &str = "the run ended before the case did";

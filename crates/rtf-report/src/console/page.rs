@@ -41,6 +41,12 @@ impl ConsoleLines {
         self.push(text);
     }
 
+    /// The heading of a list at the end of the run.
+    pub fn heading(&mut self, style: Style, text: &str) {
+        self.line("");
+        self.line(&style::paint(style, text));
+    }
+
     fn push(&mut self, text: &str) {
         self.text += text;
         self.text.push('\n');
