@@ -3,13 +3,15 @@
 use std::collections::BTreeMap;
 
 use rtf_model::{Measurement, SignalSummary};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::statistics::robust::median;
 
 /// Where the numbers of a series come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, ToSchema)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, ToSchema,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum NumberKind {
     /// Measurements.
@@ -26,12 +28,6 @@ impl NumberKind {
             Self::Measurement => "measurement",
             Self::Signal => "signal",
         }
-    }
-
-    /// The kind with this word.
-    #[must_use]
-    pub fn parse(word: &str) -> Option<Self> {
-        [Self::Measurement, Self::Signal].into_iter().find(|kind| kind.as_str() == word)
     }
 }
 
