@@ -65,23 +65,14 @@ impl Prepared {
 /// The routes of a server that has no connections.
 #[derive(Debug)]
 pub struct Routes {
-    router: Router,
-    token: String,
-    address: SocketAddr,
+    pub(crate) router: Router,
+    pub(crate) token: String,
+    pub(crate) address: SocketAddr,
     /// Keep event streams open.
-    _senders: (watch::Sender<bool>, watch::Sender<u64>),
+    pub(crate) _senders: (watch::Sender<bool>, watch::Sender<u64>),
 }
 
 impl Routes {
-    pub(crate) fn new(
-        app: App,
-        token: String,
-        address: SocketAddr,
-        senders: (watch::Sender<bool>, watch::Sender<u64>),
-    ) -> Self {
-        Self { router: router(app), token, address, _senders: senders }
-    }
-
     pub async fn answer(&self, client: SocketAddr, mut request: Request<Body>) -> Response {
         request.extensions_mut().insert(ConnectInfo(Peer(client)));
         match self.router.clone().call(request).await {
