@@ -75,7 +75,7 @@ impl App {
         &self,
         run: String,
         view: impl FnOnce(&Run, &Index) -> Result<T, Problem> + Send + 'static,
-    ) -> Result<JsonText, Problem> {
+    ) -> JsonResult {
         let runs = self.runs.clone();
         blocking(move || {
             let run = runs.find(&run)?;
@@ -112,6 +112,8 @@ pub async fn blocking<T: Send + 'static>(
 
 #[derive(Debug)]
 pub struct JsonText(Bytes);
+
+pub type JsonResult = Result<JsonText, Problem>;
 
 impl JsonText {
     /// The text of a value.

@@ -4,11 +4,9 @@ use axum::extract::State;
 
 use super::problems::Problems;
 use super::query::At;
-use crate::app::{App, JsonText};
+use crate::app::{App, JsonResult};
 use crate::problem::Problem;
 use crate::views::{Fixture, Fixtures, Hook, Hooks, Suite, Suites};
-
-type JsonResult = Result<JsonText, Problem>;
 
 /// The entry of a list with this id.
 pub fn entry<'a, T>(list: &'a [T], id: u32, what: &str) -> Result<&'a T, Problem> {

@@ -26,7 +26,7 @@ pub use positions::Positions;
 const APPENDING: Duration = Duration::from_secs(1);
 
 /// The state of a run in the API.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, utoipa::ToSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, utoipa::ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum State {
     /// The runner is still running.
@@ -40,6 +40,7 @@ pub enum State {
     /// The journal has no end, and no process writes it.
     Incomplete,
     /// Its journal is long and still being read; ask again.
+    #[default]
     Unread,
 }
 

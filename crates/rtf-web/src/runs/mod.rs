@@ -12,8 +12,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use rtf_report::journal;
 use rtf_report::run_dir::{JOURNAL, LATEST};
 
-pub use filter::{RunFilter, RunResult};
-pub use list::Listing;
+pub use filter::RunFilter;
 
 use crate::index::Index;
 use crate::problem::Problem;
