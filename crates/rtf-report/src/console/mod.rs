@@ -125,16 +125,16 @@ impl Console {
     fn flush(&mut self, at: Micros) -> Result<(), ReportError> {
         self.written = at;
         self.page.end_entry();
-        if self.page.len() == 0 {
+        if self.page.text.is_empty() {
             return Ok(());
         }
         let Self { out, page, bar, background, .. } = self;
         let written = bar.around(|| {
-            out.write_all(page.as_bytes())?;
+            out.write_all(page.text.as_bytes())?;
             // A background writer is flushed only at the end.
             if background.is_none() { out.flush() } else { Ok(()) }
         });
-        self.page.clear();
+        self.page.text.clear();
         written.map_err(failed)
     }
 
@@ -178,7 +178,7 @@ impl Reporter for Console {
             self.update_question(event, record)?;
         }
         let is_late = event.at.since(self.written) > PATIENCE;
-        if is_late || self.page.len() > PAGE { self.flush(event.at) } else { Ok(()) }
+        if is_late || self.page.text.len() > PAGE { self.flush(event.at) } else { Ok(()) }
     }
 
     fn idle(&mut self, record: &Record) -> Result<(), ReportError> {
