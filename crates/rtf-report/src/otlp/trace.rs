@@ -39,7 +39,7 @@ pub struct Trace {
     id: String,
     /// When the run started, in nanoseconds since 1970.
     epoch: u64,
-    spans: Vec<Value>,
+    pub spans: Vec<Value>,
 }
 
 impl Trace {
@@ -57,10 +57,7 @@ impl Trace {
         let dropped = events.len().saturating_sub(EVENTS);
         events.truncate(EVENTS);
         events.sort_by_key(|(at, _, _)| *at);
-        let event = |(at, name, attributes): (Micros, &str, Attributes)| {
-            json!({"timeUnixNano": self.nanos(at), "name": name,
-                "attributes": attributes.into_json()})
-        };
+        let event = |(at, name, attributes): (Micros, &str, Attributes)| json!({"timeUnixNano": self.nanos(at), "name": name, "attributes": attributes});
         let events: Vec<_> = events.into_iter().map(event).collect();
         let mut json = json!({
             "traceId": self.id,
@@ -69,7 +66,7 @@ impl Trace {
             "kind": 1,
             "startTimeUnixNano": self.nanos(start),
             "endTimeUnixNano": self.nanos(end.max(start)),
-            "attributes": attributes.into_json(),
+            "attributes": attributes,
             "events": events,
             "droppedEventsCount": dropped,
             "status": status_json(status),
@@ -83,10 +80,6 @@ impl Trace {
 
     fn nanos(&self, at: Micros) -> String {
         self.epoch.saturating_add(at.0.saturating_mul(1000)).to_string()
-    }
-
-    pub fn into_spans(self) -> Vec<Value> {
-        self.spans
     }
 }
 

@@ -3,7 +3,7 @@
 
 use rtf_model::{Record, TestRecord, Verdict};
 
-use super::syntax::{SUBTEST, description};
+use super::syntax::{SUBTEST, description, severity};
 use super::yaml::Yaml;
 use crate::cases::{CaseResult, TestCases};
 use crate::explain::{self, Extent, Sink};
@@ -114,9 +114,7 @@ impl Subtests<'_> {
         let Some(verdict) = case.verdict() else { return };
         let mut yaml = Yaml::new(text, level * SUBTEST);
         yaml.duration(case.duration);
-        yaml.text("verdict", verdict.as_str());
-        yaml.text("severity", if verdict == Verdict::Failed { "fail" } else { "error" });
-        yaml.text("message", case.reason());
+        yaml.problem(verdict, severity(verdict), case.reason());
         if let Some(location) = self.cases.locations(case).next() {
             yaml.place(&location.file, location.line);
         }
