@@ -19,7 +19,7 @@ use crate::problem::Problem;
 use crate::runs::{Run, Runs};
 
 /// Maximum number of concurrent event streams.
-const STREAMS: usize = 256;
+pub const STREAMS: usize = 256;
 
 /// The shared state of all handlers. Cheap to clone.
 #[derive(Clone)]
@@ -52,11 +52,6 @@ impl std::fmt::Debug for App {
 }
 
 impl App {
-    #[must_use]
-    pub fn streams() -> Arc<Semaphore> {
-        Arc::new(Semaphore::new(STREAMS))
-    }
-
     /// A permit for sending a file.
     ///
     /// # Errors

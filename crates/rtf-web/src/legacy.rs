@@ -35,7 +35,7 @@ async fn read<T: Serialize>(
 /// The suite that runs or ran last, and its tests.
 pub async fn status(State(app): State<App>) -> JsonResult {
     read(app, |_, index| {
-        let record = index.record();
+        let record = &index.record;
         let suite = last(record);
         let tests = suite.map_or(&[][..], |suite| &suite.tests);
         let tests = tests.iter().filter_map(|id| record.tests.get(id.index())).map(number);
@@ -64,13 +64,13 @@ fn number(test: &TestRecord) -> u8 {
 pub async fn update(State(app): State<App>) -> JsonResult {
     read(app, |run, index| {
         let failed = crate::runs::unreadable;
-        let end = index.offset();
-        let start = index.positions().at(end.saturating_sub(END));
+        let end = index.offset;
+        let start = index.positions.at(end.saturating_sub(END));
         let mut lines = LineReader::between(run.journal()?, start, end).map_err(failed)?;
         let mut shown = std::collections::VecDeque::new();
         while let Some(line) = lines.next().map_err(failed)? {
             let event = parse_event(line.text);
-            shown.extend(event.ok().and_then(|event| html(&event, index.record())));
+            shown.extend(event.ok().and_then(|event| html(&event, &index.record)));
             if shown.len() > LINES {
                 shown.pop_front();
             }

@@ -14,7 +14,7 @@ use tower_http::compression::{CompressionLayer, CompressionLevel};
 use tower_service::Service as _;
 
 use crate::access::{self, Access, AccessLog, Hosts, Rules, Secret};
-use crate::app::App;
+use crate::app::{App, STREAMS};
 use crate::connections::{Limits, Peer};
 use crate::runs::Runs;
 use crate::service::{ServeError, Service};
@@ -54,7 +54,7 @@ impl Prepared {
             commands,
             grown: grows,
             ending: ends,
-            streams: App::streams(),
+            streams: Arc::new(Semaphore::new(STREAMS)),
             lingers: Arc::new(OnceLock::new()),
             files: Arc::new(Semaphore::new(limits.files())),
         };
@@ -66,8 +66,9 @@ impl Prepared {
 #[derive(Debug)]
 pub struct Routes {
     pub(crate) router: Router,
-    pub(crate) token: String,
-    pub(crate) address: SocketAddr,
+    pub token: String,
+    /// The address for the header `Host`.
+    pub address: SocketAddr,
     /// Keep event streams open.
     pub(crate) _senders: (watch::Sender<bool>, watch::Sender<u64>),
 }
@@ -79,17 +80,6 @@ impl Routes {
             Ok(response) => response,
             Err(never) => match never {},
         }
-    }
-
-    #[must_use]
-    pub fn token(&self) -> &str {
-        &self.token
-    }
-
-    /// The address for the header `Host`.
-    #[must_use]
-    pub fn address(&self) -> SocketAddr {
-        self.address
     }
 }
 

@@ -171,7 +171,7 @@ impl WebServer {
     /// The reporter of the run that is served live.
     #[must_use]
     pub fn live(&self) -> JournalNotifier {
-        JournalNotifier::new(self.grown.clone())
+        JournalNotifier { grown: self.grown.clone() }
     }
 
     /// Announces that the run has ended, and that the server stays for this time.

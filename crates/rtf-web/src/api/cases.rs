@@ -64,7 +64,7 @@ pub async fn cases(
     QueryParams(query): QueryParams<CaseQuery>,
 ) -> JsonResult {
     app.read(run, move |_, index| {
-        let record = entry(&index.record().tests, test, "test")?;
+        let record = entry(&index.record.tests, test, "test")?;
         let attempt = usize::try_from(number).ok().and_then(|number| number.checked_sub(1));
         let attempt = attempt.and_then(|index| record.attempts.get(index));
         let missing = || Problem::not_found(format!("there is no attempt {number} of test {test}"));

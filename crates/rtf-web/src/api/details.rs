@@ -98,7 +98,7 @@ impl DetailQuery {
 
     fn lines(&self, run: &Run) -> Result<LineReader, Problem> {
         let index = run.read()?;
-        let Some(place) = index.positions().of(self.source, self.number) else {
+        let Some(place) = index.positions.of(self.source, self.number) else {
             let (what, id) = match self.source {
                 Source::Test(id) => ("attempt", format!("test {id}")),
                 Source::Fixture(id) => ("start", format!("fixture {id}")),
@@ -107,8 +107,8 @@ impl DetailQuery {
             let number = self.number;
             return Err(Problem::not_found(format!("there is no {what} {number} of {id}")));
         };
-        let known = self.page.after.map_or(0, |Number(after)| index.positions().before(after));
-        let end = place.end.unwrap_or(index.offset());
+        let known = self.page.after.map_or(0, |Number(after)| index.positions.before(after));
+        let end = place.end.unwrap_or(index.offset);
         let start = place.start.max(known);
         drop(index);
         LineReader::between(run.journal()?, start, end).map_err(unreadable)

@@ -32,7 +32,7 @@ pub async fn file(
     let place = app.place_for_file()?;
     let opened = app.with_run(run, move |run| {
         let file = open(run, &path)?;
-        let said = run.read()?.attached().of(&path).cloned();
+        let said = run.read()?.attached.of(&path).cloned();
         Ok((file, ServedType::of(&path, said.as_ref())))
     });
     let ((file, length), kind) = opened.await?;
@@ -74,7 +74,7 @@ fn open(run: &Run, path: &str) -> Result<(File, u64), Problem> {
 pub async fn journal(State(app): State<App>, At(run): At<String>) -> Result<Response, Problem> {
     let place = app.place_for_file()?;
     let opened = app.with_run(run, |run| {
-        let length = run.read()?.offset();
+        let length = run.read()?.offset;
         Ok((run.journal()?, length, run.name.clone()))
     });
     let (file, length, name) = opened.await?;

@@ -74,7 +74,7 @@ pub async fn answer(
 
 /// Whether the question waits for this answer.
 fn check(index: &Index, (test, question): (u32, u32), answer: &str) -> Result<(), Problem> {
-    let attempts = &entry(&index.record().tests, test, "test")?.attempts;
+    let attempts = &entry(&index.record.tests, test, "test")?.attempts;
     let questions = attempts.last().map_or(&[][..], |attempt| &attempt.questions);
     let open = questions.iter().find(|it| it.is_open() && it.asked.question == question);
     let open = open.ok_or_else(|| {

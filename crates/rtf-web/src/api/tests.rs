@@ -102,7 +102,7 @@ pub async fn list(
     At(run): At<String>,
     QueryParams(which): QueryParams<Which>,
 ) -> JsonResult {
-    app.read(run, move |_, index| which.page(index.record(), index.state().is_over())).await
+    app.read(run, move |_, index| which.page(&index.record, index.state().is_over())).await
 }
 
 /// One test with its attempts.
@@ -112,7 +112,7 @@ pub async fn list(
 pub async fn test(State(app): State<App>, At((run, test)): At<(String, u32)>) -> JsonResult {
     let commands = app.commands;
     app.read(run, move |run, index| {
-        let record = index.record();
+        let record = &index.record;
         let test = entry(&record.tests, test, "test")?;
         let commands = commands();
         let command = (commands.rerun)(record, test.plan.test, None);

@@ -244,7 +244,7 @@ mod tests {
             let runs = Runs::new(results.path(), own);
             runs.read_ahead();
             let open = runs.open.lock().unwrap();
-            let read = open.iter().filter(|run| run.index.lock().unwrap().offset() > 0);
+            let read = open.iter().filter(|run| run.index.lock().unwrap().offset > 0);
             assert_eq!(read.map(|run| run.name.as_str()).collect::<Vec<_>>(), expected);
         }
     }

@@ -129,7 +129,7 @@ impl RunInfo {
     /// The description of a run.
     #[must_use]
     pub fn of(name: &str, index: &Index) -> Self {
-        let record = index.record();
+        let record = &index.record;
         let state = index.state();
         let suites = record.suites.iter();
         let totals = if state.is_over() { record.final_totals() } else { record.totals() };
@@ -148,13 +148,13 @@ impl RunInfo {
             green: state.is_over().then(|| record.is_green()),
             seq: index.next_seq(),
             last_at: record.last_at.0,
-            bytes: index.offset(),
+            bytes: index.offset,
             totals: Totals::from(&totals),
             problems: suites
                 .clone()
                 .flat_map(|suite| record.suite_problems(suite.plan.suite))
                 .collect(),
-            damages: index.damages().iter().map(DamageAt::from).collect(),
+            damages: record.damages.iter().map(DamageAt::from).collect(),
             suites: record.suites.len(),
             suite_names: suites.take(NAMES).map(|suite| suite.plan.name.clone()).collect(),
             run: name.to_owned(),
