@@ -95,8 +95,8 @@ impl NumberCollector {
             }
             (known, mean) => mean.or(known),
         };
-        summary.min = smallest([summary.min, signal.min]);
-        summary.max = largest([summary.max, signal.max]);
+        summary.min = [summary.min, signal.min].into_iter().flatten().min_by(f64::total_cmp);
+        summary.max = [summary.max, signal.max].into_iter().flatten().max_by(f64::total_cmp);
         summary.count += signal.count;
         summary.outside += signal.outside;
         (summary.low, summary.high) = (signal.low, signal.high);
@@ -111,14 +111,6 @@ impl NumberCollector {
         });
         measured.chain(self.sampled).collect()
     }
-}
-
-fn smallest(numbers: [Option<f64>; 2]) -> Option<f64> {
-    numbers.into_iter().flatten().min_by(f64::total_cmp)
-}
-
-fn largest(numbers: [Option<f64>; 2]) -> Option<f64> {
-    numbers.into_iter().flatten().max_by(f64::total_cmp)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use serde::de::{DeserializeOwned, IntoDeserializer as _};
 
 use super::database::{Database, DatabaseError, Row, Value};
 use super::{PackedPoints, PackedResults, Store, StoreError, sql};
-use crate::answers::RunInfo;
+use crate::answers::{RunCounts, RunInfo};
 use crate::entry::{NumberKind, NumberSummary, RunEnd, SeriesName};
 use crate::{TestAttributes, TestIdentity};
 
@@ -240,7 +240,7 @@ fn run(row: &Row<'_>) -> Result<(i64, RunInfo), DatabaseError> {
         duration: row.get::<i64>(4)? as f64 / 1e6,
         end: word(row, 5)?.unwrap_or(RunEnd::Unfinished),
         green: row.get(6)?,
-        counts: counts.into(),
+        counts: RunCounts(counts),
         commit: row.get(15)?,
         branch: row.get(16)?,
         dirty: row.get(17)?,
