@@ -77,7 +77,14 @@ impl Fanout {
     pub fn start(reporters: Vec<Box<dyn Reporter>>) -> std::io::Result<Self> {
         let (sender, receiver) = mpsc::channel();
         let backlog = Arc::new(Backlog::default());
-        let state = FanoutState::new(reporters, Arc::clone(&backlog));
+        let state = FanoutState {
+            record: Record::default(),
+            reporters: reporters.into_iter().map(Some).collect(),
+            errors: Vec::new(),
+            order: OrderChecker::default(),
+            disorder: None,
+            backlog: Arc::clone(&backlog),
+        };
         let thread = thread::Builder::new().name("reports".into()).spawn(|| state.run(receiver))?;
         Ok(Self { handle: FanoutHandle { sender, backlog }, thread })
     }
@@ -142,17 +149,6 @@ impl Drop for FanoutState {
 }
 
 impl FanoutState {
-    fn new(reporters: Vec<Box<dyn Reporter>>, backlog: Arc<Backlog>) -> Self {
-        Self {
-            backlog,
-            record: Record::default(),
-            reporters: reporters.into_iter().map(Some).collect(),
-            errors: Vec::new(),
-            order: OrderChecker::default(),
-            disorder: None,
-        }
-    }
-
     fn run(mut self, receiver: Receiver<Event>) -> Outcome {
         loop {
             match receiver.try_recv() {

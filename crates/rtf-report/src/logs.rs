@@ -12,7 +12,7 @@ use rtf_model::{
     Event, EventKind, FixtureId, HookId, Output, Record, Source, SuiteId, SuitePrepared, TestId,
 };
 
-use crate::{ReportError, Reporter, private_resources};
+use crate::{ReportError, Reporter, explain, private_resources};
 
 const WHAT: &str = "a log";
 
@@ -153,11 +153,8 @@ impl Logs {
     /// The private resources of a suite.
     fn prepared(&self, prepared: &SuitePrepared, record: &Record) -> Result<(), ReportError> {
         let path = self.folder.join(suite_log(record, prepared.suite));
-        let mut text = String::new();
-        private_resources::show(prepared, &mut |_, line| {
-            text += line;
-            text.push('\n');
-        });
+        let lines = explain::lines(|sink| private_resources::show(prepared, sink));
+        let text = lines.join("\n") + "\n";
         let written = create(&path).and_then(|mut file| file.write_all(text.as_bytes()));
         written.map_err(ReportError::at(WHAT, &path))
     }

@@ -29,7 +29,7 @@ pub(crate) struct TestCases<'r> {
     problems: HashMap<(usize, CaseId), CaseProblems<'r>>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct CaseResult<'r> {
     /// Its name, after those of the cases that contain it.
     pub path: &'r str,
@@ -167,15 +167,7 @@ impl<'r> CaseResult<'r> {
     }
 
     fn not_run(path: &'r str) -> Self {
-        Self {
-            path,
-            record: None,
-            duration: Duration::ZERO,
-            parent: None,
-            is_container: false,
-            is_problem: false,
-            attempt: 0,
-        }
+        Self { path, ..Self::default() }
     }
 }
 

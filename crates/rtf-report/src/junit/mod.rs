@@ -125,8 +125,7 @@ fn leaked(case: &mut TestCase, left: &[LeakedProcess], passed: bool) {
         case.add_property(("leaked", explain::process(process).as_str()));
     }
     if passed && !left.is_empty() {
-        let mut lines = String::new();
-        explain::left(left, &mut |_, line| lines += &format!("{line}\n"));
-        case.set_system_err(lines);
+        let lines = explain::lines(|sink| explain::left(left, sink));
+        case.set_system_err(lines.join("\n") + "\n");
     }
 }
