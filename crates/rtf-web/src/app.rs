@@ -45,12 +45,6 @@ pub struct App {
     pub files: Arc<Semaphore>,
 }
 
-impl std::fmt::Debug for App {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("App").field("runs", &self.runs).finish_non_exhaustive()
-    }
-}
-
 impl App {
     /// A permit for sending a file.
     ///

@@ -44,10 +44,11 @@ pub struct BoundServer {
 /// A server that runs.
 #[derive(Debug)]
 pub struct WebServer {
-    address: SocketAddr,
+    pub address: SocketAddr,
     wanted: SocketAddr,
     token: String,
-    fingerprint: Option<String>,
+    /// The SHA-256 of the certificate, when this server signed it itself.
+    pub fingerprint: Option<String>,
     tls: bool,
     ending: watch::Sender<bool>,
     grown: watch::Sender<u64>,
@@ -150,22 +151,11 @@ impl WebServer {
         format!("{scheme}://{host}:{port}/#token={}", self.token)
     }
 
-    #[must_use]
-    pub fn address(&self) -> SocketAddr {
-        self.address
-    }
-
     /// The port that was asked for, when it was taken.
     #[must_use]
     pub fn taken(&self) -> Option<u16> {
         let wanted = self.wanted.port();
         (wanted != 0 && wanted != self.address.port()).then_some(wanted)
-    }
-
-    /// The SHA-256 of the certificate, when this server signed it itself.
-    #[must_use]
-    pub fn fingerprint(&self) -> Option<&str> {
-        self.fingerprint.as_deref()
     }
 
     /// The reporter of the run that is served live.
