@@ -3,118 +3,64 @@
 use rtf_history::answers::EpisodeLine;
 use rtf_history::entry::CampaignInfo;
 
-use crate::rows::{Cell, CellType, Column, ExportRow, integer, maybe_text, text};
+use crate::rows::CellType::{Flag, Integer, Number, Text, Time};
+use crate::rows::{Cell, Column, ExportRow, integer, maybe_text, text};
 
 impl ExportRow for CampaignInfo {
     const TABLE: &'static str = "campaigns";
-
-    fn columns() -> Vec<Column> {
-        use CellType::{Flag, Integer, Number, Text, Time};
-        vec![
-            ("id", Text),
-            ("directory", Text),
-            ("name", Text),
-            ("file", Text),
-            ("suite_file", Text),
-            ("started", Time),
-            ("ended", Time),
-            ("end", Text),
-            ("commit", Text),
-            ("branch", Text),
-            ("dirty", Flag),
-            ("author_time", Time),
-            ("ci_job", Text),
-            ("host", Text),
-            ("profile", Text),
-            ("set", Text),
-            ("rtf", Text),
-            ("seed", Integer),
-            ("space", Text),
-            ("claim", Number),
-            ("rule", Text),
-            ("confidence", Number),
-            ("verdict", Text),
-            ("planned", Integer),
-            ("run", Integer),
-            ("passed", Integer),
-            ("failed", Integer),
-            ("without_result", Integer),
-            ("rate", Number),
-            ("low", Number),
-            ("high", Number),
-        ]
-    }
-
-    fn cells(&self) -> Vec<Cell<'_>> {
-        let rate = self.rate.as_ref();
-        vec![
-            text(&self.id),
-            text(&self.directory),
-            text(&self.name),
-            text(&self.file),
-            text(&self.suite_file),
-            Cell::Time(Some(self.started)),
-            Cell::Time(Some(self.ended)),
-            text(self.end.as_str()),
-            maybe_text(self.commit.as_ref()),
-            maybe_text(self.branch.as_ref()),
-            Cell::Flag(self.dirty),
-            Cell::OffsetTime(self.author_time.as_deref()),
-            maybe_text(self.ci_job.as_ref()),
-            text(&self.host),
-            maybe_text(self.profile.as_ref()),
-            Cell::Text(Some(self.set.join(" ").into())),
-            text(&self.rtf),
-            integer(self.seed),
-            text(&self.space),
-            Cell::Number(Some(self.claim)),
-            text(&self.rule),
-            Cell::Number(Some(self.confidence)),
-            text(&self.verdict),
-            integer(self.planned),
-            integer(self.run),
-            integer(self.passed),
-            integer(self.failed),
-            integer(self.without_result),
-            Cell::Number(rate.map(|it| it.value)),
-            Cell::Number(rate.map(|it| it.low)),
-            Cell::Number(rate.map(|it| it.high)),
-        ]
-    }
+    const COLUMNS: &'static [Column<Self>] = &[
+        ("id", Text, |it| text(&it.id)),
+        ("directory", Text, |it| text(&it.directory)),
+        ("name", Text, |it| text(&it.name)),
+        ("file", Text, |it| text(&it.file)),
+        ("suite_file", Text, |it| text(&it.suite_file)),
+        ("started", Time, |it| Cell::Time(Some(it.started))),
+        ("ended", Time, |it| Cell::Time(Some(it.ended))),
+        ("end", Text, |it| text(it.end.as_str())),
+        ("commit", Text, |it| maybe_text(it.commit.as_ref())),
+        ("branch", Text, |it| maybe_text(it.branch.as_ref())),
+        ("dirty", Flag, |it| Cell::Flag(it.dirty)),
+        ("author_time", Time, |it| Cell::OffsetTime(it.author_time.as_deref())),
+        ("ci_job", Text, |it| maybe_text(it.ci_job.as_ref())),
+        ("host", Text, |it| text(&it.host)),
+        ("profile", Text, |it| maybe_text(it.profile.as_ref())),
+        ("set", Text, |it| Cell::Text(Some(it.set.join(" ").into()))),
+        ("rtf", Text, |it| text(&it.rtf)),
+        ("seed", Integer, |it| integer(it.seed)),
+        ("space", Text, |it| text(&it.space)),
+        ("claim", Number, |it| Cell::Number(Some(it.claim))),
+        ("rule", Text, |it| text(&it.rule)),
+        ("confidence", Number, |it| Cell::Number(Some(it.confidence))),
+        ("verdict", Text, |it| text(&it.verdict)),
+        ("planned", Integer, |it| integer(it.planned)),
+        ("run", Integer, |it| integer(it.run)),
+        ("passed", Integer, |it| integer(it.passed)),
+        ("failed", Integer, |it| integer(it.failed)),
+        ("without_result", Integer, |it| integer(it.without_result)),
+        ("rate", Number, |it| Cell::Number(it.rate.map(|rate| rate.value))),
+        ("low", Number, |it| Cell::Number(it.rate.map(|rate| rate.low))),
+        ("high", Number, |it| Cell::Number(it.rate.map(|rate| rate.high))),
+    ];
 }
 
 impl ExportRow for EpisodeLine {
     const TABLE: &'static str = "episodes";
+    const COLUMNS: &'static [Column<Self>] = &[
+        ("campaign", Text, |it| text(&it.campaign)),
+        ("name", Text, |it| text(&it.name)),
+        ("started", Time, |it| Cell::Time(Some(it.started))),
+        ("commit", Text, |it| maybe_text(it.commit.as_ref())),
+        ("episode", Integer, |it| integer(it.episode)),
+        ("seed", Integer, |it| integer(it.seed)),
+        ("outcome", Text, |it| text(&it.outcome)),
+        ("reason", Text, |it| maybe_text(it.reason.as_ref())),
+        ("duration", Number, |it| Cell::Number(Some(it.duration))),
+        ("parameters", Text, |it| Cell::Text(Some(assignments(it).into()))),
+    ];
+}
 
-    fn columns() -> Vec<Column> {
-        use CellType::{Integer, Number, Text, Time};
-        vec![
-            ("campaign", Text),
-            ("name", Text),
-            ("started", Time),
-            ("commit", Text),
-            ("episode", Integer),
-            ("seed", Integer),
-            ("outcome", Text),
-            ("reason", Text),
-            ("duration", Number),
-            ("parameters", Text),
-        ]
-    }
-
-    fn cells(&self) -> Vec<Cell<'_>> {
-        let pairs = self.parameters.iter().map(|(name, value)| format!("{name}={value}"));
-        vec![
-            text(&self.campaign),
-            text(&self.name),
-            Cell::Time(Some(self.started)),
-            maybe_text(self.commit.as_ref()),
-            integer(self.episode),
-            integer(self.seed),
-            text(&self.outcome),
-            maybe_text(self.reason.as_ref()),
-            Cell::Number(Some(self.duration)),
-            Cell::Text(Some(pairs.collect::<Vec<_>>().join(" ").into())),
-        ]
-    }
+/// The parameters of an episode, as `NAME=VALUE`.
+fn assignments(episode: &EpisodeLine) -> String {
+    let pairs = episode.parameters.iter().map(|(name, value)| format!("{name}={value}"));
+    pairs.collect::<Vec<_>>().join(" ")
 }

@@ -9,14 +9,14 @@ pub struct CsvWriter<W: Write>(Box<csv::Writer<W>>);
 impl<W: Write> CsvWriter<W> {
     pub fn new<R: ExportRow>(out: W) -> io::Result<Self> {
         let mut writer = Box::new(csv::Writer::from_writer(out));
-        writer.write_record(R::columns().iter().map(|(name, _)| name))?;
+        writer.write_record(R::COLUMNS.iter().map(|(name, ..)| name))?;
         Ok(Self(writer))
     }
 }
 
 impl<W: Write> RowWriter for CsvWriter<W> {
     fn add(&mut self, row: &impl ExportRow) -> io::Result<()> {
-        Ok(self.0.write_record(row.cells().into_iter().map(printed))?)
+        Ok(self.0.write_record(row.cells().map(printed))?)
     }
 
     fn finish(mut self) -> io::Result<()> {

@@ -18,22 +18,11 @@ use rows::{ExportRow, RowWriter};
 const VERSION: u32 = 1;
 
 /// An export that cannot be continued.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
+#[error(transparent)]
 pub enum ExportError {
-    Store(StoreError),
-    Output(io::Error),
-}
-
-impl From<StoreError> for ExportError {
-    fn from(error: StoreError) -> Self {
-        Self::Store(error)
-    }
-}
-
-impl From<io::Error> for ExportError {
-    fn from(error: io::Error) -> Self {
-        Self::Output(error)
-    }
+    Store(#[from] StoreError),
+    Output(#[from] io::Error),
 }
 
 /// The format of the rows.
@@ -72,87 +61,49 @@ impl Question<'_> {
     /// # Errors
     /// The store cannot be read, or `out` cannot be written.
     pub fn answer(&self, out: &mut (dyn Write + Send)) -> Result<(), ExportError> {
+        let Self { store, runs, is_exported, .. } = self;
         match self.table {
-            Table::Runs => self.write_rows::<RunInfo>(out),
-            Table::Results => self.write_rows::<ResultLine>(out),
-            Table::Points => self.write_rows::<PointLine>(out),
-            Table::Campaigns => self.write_rows::<CampaignInfo>(out),
-            Table::Episodes => self.write_rows::<EpisodeLine>(out),
+            Table::Runs => {
+                self.write::<RunInfo>(out, |visit| store.runs(runs)?.iter().try_for_each(visit))
+            }
+            Table::Results => self.write::<ResultLine>(out, |visit| {
+                store.for_each_result(runs, is_exported, |line| visit(&line))
+            }),
+            Table::Points => self.write::<PointLine>(out, |visit| {
+                store.for_each_point(runs, is_exported, |line| visit(&line))
+            }),
+            Table::Campaigns => self.write::<CampaignInfo>(out, |visit| {
+                store.campaigns(runs, None)?.iter().try_for_each(visit)
+            }),
+            Table::Episodes => self.write::<EpisodeLine>(out, |visit| {
+                store.for_each_episode(runs, |line| visit(&line))
+            }),
         }
     }
 
-    fn write_rows<R: ReadRows>(&self, out: &mut (dyn Write + Send)) -> Result<(), ExportError> {
+    /// Writes the rows with which `read` calls its argument.
+    fn write<R: ExportRow>(
+        &self,
+        out: &mut (dyn Write + Send),
+        read: impl FnOnce(Visit<'_, R>) -> Result<(), ExportError>,
+    ) -> Result<(), ExportError> {
         match self.format {
-            Format::Csv => self.write_with::<R>(csv::CsvWriter::new::<R>(out)?),
-            Format::Json => self.write_with::<R>(json::JsonWriter::new(out)?),
+            Format::Csv => write_with(csv::CsvWriter::new::<R>(out)?, read),
+            Format::Json => write_with(json::JsonWriter::new(out)?, read),
             Format::Parquet => {
-                self.write_with::<R>(parquet::ParquetWriter::new::<R>(out, parquet::GROUP)?)
+                write_with(parquet::ParquetWriter::new::<R>(out, parquet::GROUP)?, read)
             }
         }
     }
-
-    fn write_with<R: ReadRows>(&self, mut writer: impl RowWriter) -> Result<(), ExportError> {
-        R::for_each(self, |row| Ok(writer.add(row)?))?;
-        Ok(writer.finish()?)
-    }
-
-    fn is_meant(&self, test: &TestAttributes) -> bool {
-        (self.is_exported)(test)
-    }
 }
 
-/// A row that a store has.
-trait ReadRows: ExportRow + Sized {
-    /// Calls `visit` with each row of the answer.
-    fn for_each(
-        question: &Question<'_>,
-        visit: impl FnMut(&Self) -> Result<(), ExportError>,
-    ) -> Result<(), ExportError>;
-}
+/// Called with each row of the answer.
+type Visit<'v, R> = &'v mut dyn FnMut(&R) -> Result<(), ExportError>;
 
-impl ReadRows for RunInfo {
-    fn for_each(
-        question: &Question<'_>,
-        visit: impl FnMut(&Self) -> Result<(), ExportError>,
-    ) -> Result<(), ExportError> {
-        question.store.runs(&question.runs)?.iter().try_for_each(visit)
-    }
-}
-
-impl ReadRows for CampaignInfo {
-    fn for_each(
-        question: &Question<'_>,
-        visit: impl FnMut(&Self) -> Result<(), ExportError>,
-    ) -> Result<(), ExportError> {
-        question.store.campaigns(&question.runs, None)?.iter().try_for_each(visit)
-    }
-}
-
-impl ReadRows for EpisodeLine {
-    fn for_each(
-        question: &Question<'_>,
-        mut visit: impl FnMut(&Self) -> Result<(), ExportError>,
-    ) -> Result<(), ExportError> {
-        question.store.for_each_episode(&question.runs, |line| visit(&line))
-    }
-}
-
-impl ReadRows for ResultLine {
-    fn for_each(
-        question: &Question<'_>,
-        mut visit: impl FnMut(&Self) -> Result<(), ExportError>,
-    ) -> Result<(), ExportError> {
-        let tests = |test: &TestAttributes| question.is_meant(test);
-        question.store.for_each_result(&question.runs, &tests, |line| visit(&line))
-    }
-}
-
-impl ReadRows for PointLine {
-    fn for_each(
-        question: &Question<'_>,
-        mut visit: impl FnMut(&Self) -> Result<(), ExportError>,
-    ) -> Result<(), ExportError> {
-        let tests = |test: &TestAttributes| question.is_meant(test);
-        question.store.for_each_point(&question.runs, &tests, |line| visit(&line))
-    }
+fn write_with<R: ExportRow>(
+    mut writer: impl RowWriter,
+    read: impl FnOnce(Visit<'_, R>) -> Result<(), ExportError>,
+) -> Result<(), ExportError> {
+    read(&mut |row| Ok(writer.add(row)?))?;
+    Ok(writer.finish()?)
 }

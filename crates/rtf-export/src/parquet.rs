@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use jiff::Timestamp;
 use parquet::basic::{Compression, LogicalType, Repetition, TimeUnit, Type as PhysicalType};
-use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
@@ -40,7 +40,6 @@ pub struct ParquetWriter<W: Write + Send> {
 
 impl<W: Write + Send> ParquetWriter<W> {
     pub fn new<R: ExportRow>(out: W, size: GroupSize) -> io::Result<Self> {
-        let columns = R::columns();
         let value = |key: &str, value: String| KeyValue::new(key.to_owned(), value);
         let properties = WriterProperties::builder()
             .set_compression(Compression::SNAPPY)
@@ -48,8 +47,8 @@ impl<W: Write + Send> ParquetWriter<W> {
                 value("rtf.version", VERSION.to_string()),
                 value("rtf.table", R::TABLE.to_owned()),
             ]));
-        let file = SerializedFileWriter::new(out, schema(&columns)?, Arc::new(properties.build()))?;
-        let columns = columns.iter().map(|(_, cell_type)| ColumnCells::new(*cell_type)).collect();
+        let file = SerializedFileWriter::new(out, schema::<R>()?, Arc::new(properties.build()))?;
+        let columns = R::COLUMNS.iter().map(|(_, kind, _)| ColumnCells::new(*kind)).collect();
         Ok(Self { file, size, columns, rows: 0, text: 0 })
     }
 
@@ -88,8 +87,8 @@ impl<W: Write + Send> RowWriter for ParquetWriter<W> {
 }
 
 /// The columns of a table, which may all be null.
-fn schema(columns: &[Column]) -> Result<TypePtr, ParquetError> {
-    let field = |(name, cell_type): &Column| {
+fn schema<R: ExportRow>() -> Result<TypePtr, ParquetError> {
+    let field = |(name, cell_type, _): &Column<R>| {
         let (physical, logical) = match cell_type {
             CellType::Text => (PhysicalType::BYTE_ARRAY, Some(LogicalType::String)),
             CellType::Integer => (PhysicalType::INT64, None),
@@ -105,7 +104,7 @@ fn schema(columns: &[Column]) -> Result<TypePtr, ParquetError> {
             .build()
             .map(Arc::new)
     };
-    let fields = columns.iter().map(field).collect::<Result<_, _>>()?;
+    let fields = R::COLUMNS.iter().map(field).collect::<Result<_, _>>()?;
     Type::group_type_builder("row").with_fields(fields).build().map(Arc::new)
 }
 
@@ -118,21 +117,19 @@ struct ColumnCells {
 
 enum Values {
     Text(Vec<ByteArray>),
+    /// Of a time, the microseconds since 1970.
     Integer(Vec<i64>),
     Number(Vec<f64>),
     Flag(Vec<bool>),
-    /// In microseconds since 1970.
-    Time(Vec<i64>),
 }
 
 impl ColumnCells {
     fn new(cell_type: CellType) -> Self {
         let values = match cell_type {
             CellType::Text => Values::Text(Vec::new()),
-            CellType::Integer => Values::Integer(Vec::new()),
+            CellType::Integer | CellType::Time => Values::Integer(Vec::new()),
             CellType::Number => Values::Number(Vec::new()),
             CellType::Flag => Values::Flag(Vec::new()),
-            CellType::Time => Values::Time(Vec::new()),
         };
         Self { values, definition_levels: Vec::new() }
     }
@@ -155,10 +152,10 @@ impl ColumnCells {
             }
             (Values::Number(values), Cell::Number(number)) => push(values, number),
             (Values::Flag(values), Cell::Flag(flag)) => push(values, flag),
-            (Values::Time(values), Cell::Time(time)) => {
+            (Values::Integer(values), Cell::Time(time)) => {
                 push(values, time.map(Timestamp::as_microsecond))
             }
-            (Values::Time(values), Cell::OffsetTime(time)) => {
+            (Values::Integer(values), Cell::OffsetTime(time)) => {
                 let time = time.and_then(|time| time.parse().ok());
                 push(values, time.map(Timestamp::as_microsecond))
             }
@@ -170,28 +167,24 @@ impl ColumnCells {
 
     /// Writes the cells, and removes them.
     fn write(&mut self, column: &mut SerializedColumnWriter<'_>) -> Result<(), ParquetError> {
-        let levels = Some(self.definition_levels.as_slice());
+        let levels = std::mem::take(&mut self.definition_levels);
         match &mut self.values {
-            Values::Text(values) => {
-                column.typed::<ByteArrayType>().write_batch(values, levels, None)?;
-                values.clear();
-            }
-            Values::Integer(values) | Values::Time(values) => {
-                column.typed::<Int64Type>().write_batch(values, levels, None)?;
-                values.clear();
-            }
-            Values::Number(values) => {
-                column.typed::<DoubleType>().write_batch(values, levels, None)?;
-                values.clear();
-            }
-            Values::Flag(values) => {
-                column.typed::<BoolType>().write_batch(values, levels, None)?;
-                values.clear();
-            }
+            Values::Text(values) => write::<ByteArrayType>(column, values, &levels),
+            Values::Integer(values) => write::<Int64Type>(column, values, &levels),
+            Values::Number(values) => write::<DoubleType>(column, values, &levels),
+            Values::Flag(values) => write::<BoolType>(column, values, &levels),
         }
-        self.definition_levels.clear();
-        Ok(())
     }
+}
+
+fn write<T: DataType>(
+    column: &mut SerializedColumnWriter<'_>,
+    values: &mut Vec<T::T>,
+    levels: &[i16],
+) -> Result<(), ParquetError> {
+    column.typed::<T>().write_batch(values, Some(levels), None)?;
+    values.clear();
+    Ok(())
 }
 
 /// Adds a value; returns whether there is one.
@@ -215,15 +208,10 @@ mod tests {
 
     impl ExportRow for Row {
         const TABLE: &'static str = "rows";
-
-        fn columns() -> Vec<Column> {
-            vec![("text", CellType::Text), ("number", CellType::Integer)]
-        }
-
-        fn cells(&self) -> Vec<Cell<'_>> {
-            let text = self.0.as_deref().map(Into::into);
-            vec![Cell::Text(text), Cell::Integer(Some(self.1))]
-        }
+        const COLUMNS: &'static [Column<Self>] = &[
+            ("text", CellType::Text, |row| Cell::Text(row.0.as_deref().map(Into::into))),
+            ("number", CellType::Integer, |row| Cell::Integer(Some(row.1))),
+        ];
     }
 
     /// The number of rows in each group.

@@ -8,6 +8,8 @@ use rtf_history::answers::{PointLine, ResultLine, RunInfo};
 use rtf_model::Verdict;
 use serde::Serialize;
 
+use CellType::{Flag, Integer, Number, Text, Time};
+
 /// What the cells of a column contain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CellType {
@@ -19,8 +21,8 @@ pub enum CellType {
     Time,
 }
 
-/// The name of a column, and what it contains.
-pub type Column = (&'static str, CellType);
+/// The name of a column, what it contains, and its cell of a row.
+pub type Column<R> = (&'static str, CellType, fn(&R) -> Cell<'_>);
 
 /// A value; `None` is unknown.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,16 +36,17 @@ pub enum Cell<'a> {
     OffsetTime(Option<&'a str>),
 }
 
-/// A row of a table: its cells are those of the columns, in their order.
-pub trait ExportRow: Serialize {
+/// A row of a table.
+pub trait ExportRow: Serialize + Sized + 'static {
     /// The name of the table.
     const TABLE: &'static str;
 
-    /// The columns of the table.
-    fn columns() -> Vec<Column>;
+    const COLUMNS: &'static [Column<Self>];
 
-    /// The values.
-    fn cells(&self) -> Vec<Cell<'_>>;
+    /// The values, in the order of the columns.
+    fn cells(&self) -> impl Iterator<Item = Cell<'_>> {
+        Self::COLUMNS.iter().map(|(_, _, cell)| cell(self))
+    }
 }
 
 /// Writes rows in a format.
@@ -69,157 +72,79 @@ pub fn integer(number: impl Into<u64>) -> Cell<'static> {
 
 impl ExportRow for ResultLine {
     const TABLE: &'static str = "results";
-
-    fn columns() -> Vec<Column> {
-        use CellType::{Flag, Integer, Number, Text, Time};
-        vec![
-            ("suite_file", Text),
-            ("suite", Text),
-            ("test", Text),
-            ("case", Text),
-            ("run", Text),
-            ("name", Text),
-            ("started", Time),
-            ("commit", Text),
-            ("branch", Text),
-            ("robot", Text),
-            ("verdict", Text),
-            ("flaky", Flag),
-            ("attempts", Integer),
-            ("problems", Integer),
-            ("duration", Number),
-            ("reason", Text),
-            ("plugin_hash", Text),
-            ("source_hash", Text),
-        ]
-    }
-
-    fn cells(&self) -> Vec<Cell<'_>> {
-        let Self { identity, result } = self;
-        vec![
-            text(&identity.suite_file),
-            text(&identity.suite),
-            text(&identity.test),
-            text(&identity.case),
-            text(&result.run),
-            text(&result.name),
-            Cell::Time(Some(result.started)),
-            maybe_text(result.commit.as_ref()),
-            maybe_text(result.branch.as_ref()),
-            text(&result.robot),
-            text(result.verdict.as_str()),
-            Cell::Flag(Some(result.flaky)),
-            integer(result.attempts),
-            integer(result.problems),
-            Cell::Number(result.duration),
-            maybe_text(result.reason.as_ref()),
-            maybe_text(result.plugin_hash.as_ref()),
-            maybe_text(result.source_hash.as_ref()),
-        ]
-    }
+    const COLUMNS: &'static [Column<Self>] = &[
+        ("suite_file", Text, |it| text(&it.identity.suite_file)),
+        ("suite", Text, |it| text(&it.identity.suite)),
+        ("test", Text, |it| text(&it.identity.test)),
+        ("case", Text, |it| text(&it.identity.case)),
+        ("run", Text, |it| text(&it.result.run)),
+        ("name", Text, |it| text(&it.result.name)),
+        ("started", Time, |it| Cell::Time(Some(it.result.started))),
+        ("commit", Text, |it| maybe_text(it.result.commit.as_ref())),
+        ("branch", Text, |it| maybe_text(it.result.branch.as_ref())),
+        ("robot", Text, |it| text(&it.result.robot)),
+        ("verdict", Text, |it| text(it.result.verdict.as_str())),
+        ("flaky", Flag, |it| Cell::Flag(Some(it.result.flaky))),
+        ("attempts", Integer, |it| integer(it.result.attempts)),
+        ("problems", Integer, |it| integer(it.result.problems)),
+        ("duration", Number, |it| Cell::Number(it.result.duration)),
+        ("reason", Text, |it| maybe_text(it.result.reason.as_ref())),
+        ("plugin_hash", Text, |it| maybe_text(it.result.plugin_hash.as_ref())),
+        ("source_hash", Text, |it| maybe_text(it.result.source_hash.as_ref())),
+    ];
 }
 
 impl ExportRow for PointLine {
     const TABLE: &'static str = "points";
-
-    fn columns() -> Vec<Column> {
-        use CellType::{Integer, Number, Text, Time};
-        vec![
-            ("suite_file", Text),
-            ("suite", Text),
-            ("test", Text),
-            ("case", Text),
-            ("kind", Text),
-            ("name", Text),
-            ("unit", Text),
-            ("run", Text),
-            ("started", Time),
-            ("commit", Text),
-            ("value", Number),
-            ("min", Number),
-            ("max", Number),
-            ("count", Integer),
-            ("not_finite", Integer),
-            ("outside", Integer),
-            ("low", Number),
-            ("high", Number),
-        ]
-    }
-
-    fn cells(&self) -> Vec<Cell<'_>> {
-        let Self { identity, series, point } = self;
-        vec![
-            text(&identity.suite_file),
-            text(&identity.suite),
-            text(&identity.test),
-            text(&identity.case),
-            text(series.kind.as_str()),
-            text(&series.name),
-            text(&series.unit),
-            text(&point.run),
-            Cell::Time(Some(point.started)),
-            maybe_text(point.commit.as_ref()),
-            Cell::Number(point.value),
-            Cell::Number(point.min),
-            Cell::Number(point.max),
-            integer(point.count),
-            integer(point.not_finite),
-            integer(point.outside),
-            Cell::Number(point.low),
-            Cell::Number(point.high),
-        ]
-    }
+    const COLUMNS: &'static [Column<Self>] = &[
+        ("suite_file", Text, |it| text(&it.identity.suite_file)),
+        ("suite", Text, |it| text(&it.identity.suite)),
+        ("test", Text, |it| text(&it.identity.test)),
+        ("case", Text, |it| text(&it.identity.case)),
+        ("kind", Text, |it| text(it.series.kind.as_str())),
+        ("name", Text, |it| text(&it.series.name)),
+        ("unit", Text, |it| text(&it.series.unit)),
+        ("run", Text, |it| text(&it.point.run)),
+        ("started", Time, |it| Cell::Time(Some(it.point.started))),
+        ("commit", Text, |it| maybe_text(it.point.commit.as_ref())),
+        ("value", Number, |it| Cell::Number(it.point.value)),
+        ("min", Number, |it| Cell::Number(it.point.min)),
+        ("max", Number, |it| Cell::Number(it.point.max)),
+        ("count", Integer, |it| integer(it.point.count)),
+        ("not_finite", Integer, |it| integer(it.point.not_finite)),
+        ("outside", Integer, |it| integer(it.point.outside)),
+        ("low", Number, |it| Cell::Number(it.point.low)),
+        ("high", Number, |it| Cell::Number(it.point.high)),
+    ];
 }
 
 impl ExportRow for RunInfo {
     const TABLE: &'static str = "runs";
-
-    fn columns() -> Vec<Column> {
-        use CellType::{Flag, Integer, Number, Text, Time};
-        let attributes = [
-            ("id", Text),
-            ("name", Text),
-            ("started", Time),
-            ("duration", Number),
-            ("end", Text),
-            ("green", Flag),
-            ("commit", Text),
-            ("branch", Text),
-            ("dirty", Flag),
-            ("author_time", Time),
-            ("ci_job", Text),
-            ("host", Text),
-            ("cpus", Integer),
-            ("load_percent", Integer),
-            ("profile", Text),
-            ("parameters", Text),
-            ("rtf", Text),
-        ];
-        let verdicts = Verdict::ALL.into_iter().map(|verdict| (verdict.as_str(), Integer));
-        attributes.into_iter().chain(verdicts).collect()
-    }
-
-    fn cells(&self) -> Vec<Cell<'_>> {
-        let mut cells = vec![
-            text(&self.id),
-            text(&self.name),
-            Cell::Time(Some(self.started)),
-            Cell::Number(Some(self.duration)),
-            text(self.end.as_str()),
-            Cell::Flag(Some(self.green)),
-            maybe_text(self.commit.as_ref()),
-            maybe_text(self.branch.as_ref()),
-            Cell::Flag(self.dirty),
-            Cell::OffsetTime(self.author_time.as_deref()),
-            maybe_text(self.ci_job.as_ref()),
-            maybe_text(self.host.as_ref()),
-            Cell::Integer(self.cpus.map(u64::from)),
-            Cell::Integer(self.load_percent.map(u64::from)),
-            maybe_text(self.profile.as_ref()),
-            Cell::Text(Some(self.parameters.join(" ").into())),
-            text(&self.rtf),
-        ];
-        cells.extend(Verdict::ALL.map(|verdict| integer(self.counts.of(verdict))));
-        cells
-    }
+    const COLUMNS: &'static [Column<Self>] = &[
+        ("id", Text, |it| text(&it.id)),
+        ("name", Text, |it| text(&it.name)),
+        ("started", Time, |it| Cell::Time(Some(it.started))),
+        ("duration", Number, |it| Cell::Number(Some(it.duration))),
+        ("end", Text, |it| text(it.end.as_str())),
+        ("green", Flag, |it| Cell::Flag(Some(it.green))),
+        ("commit", Text, |it| maybe_text(it.commit.as_ref())),
+        ("branch", Text, |it| maybe_text(it.branch.as_ref())),
+        ("dirty", Flag, |it| Cell::Flag(it.dirty)),
+        ("author_time", Time, |it| Cell::OffsetTime(it.author_time.as_deref())),
+        ("ci_job", Text, |it| maybe_text(it.ci_job.as_ref())),
+        ("host", Text, |it| maybe_text(it.host.as_ref())),
+        ("cpus", Integer, |it| Cell::Integer(it.cpus.map(u64::from))),
+        ("load_percent", Integer, |it| Cell::Integer(it.load_percent.map(u64::from))),
+        ("profile", Text, |it| maybe_text(it.profile.as_ref())),
+        ("parameters", Text, |it| Cell::Text(Some(it.parameters.join(" ").into()))),
+        ("rtf", Text, |it| text(&it.rtf)),
+        ("passed", Integer, |it| integer(it.counts.of(Verdict::Passed))),
+        ("failed", Integer, |it| integer(it.counts.of(Verdict::Failed))),
+        ("error", Integer, |it| integer(it.counts.of(Verdict::Error))),
+        ("crashed", Integer, |it| integer(it.counts.of(Verdict::Crashed))),
+        ("timed-out", Integer, |it| integer(it.counts.of(Verdict::TimedOut))),
+        ("collapsed", Integer, |it| integer(it.counts.of(Verdict::Collapsed))),
+        ("skipped", Integer, |it| integer(it.counts.of(Verdict::Skipped))),
+        ("interrupted", Integer, |it| integer(it.counts.of(Verdict::Interrupted))),
+    ];
 }

@@ -17,3 +17,8 @@ pub mod store;
 pub use identity::{SuiteFileBase, TestIdentity};
 pub use selection::{RunSelection, TestAttributes, TestSelection};
 pub use store::{ImportOutcome, Location, Store, StoreError};
+
+/// For serde, which calls it with a reference.
+fn is_zero(number: &u64) -> bool {
+    *number == 0
+}

@@ -19,10 +19,8 @@ const DEPTH: usize = 8;
 pub fn import(workspace: &Path) -> Result<Import, ImportError> {
     let workspace = &crate::absolute(workspace)?;
     let build = workspace.join("build");
-    let mut packages: Vec<PathBuf> = match std::fs::read_dir(&build) {
-        Ok(entries) => entries.filter_map(Result::ok).map(|it| it.path()).collect(),
-        Err(_) => Vec::new(),
-    };
+    let entries = std::fs::read_dir(&build).into_iter().flatten().filter_map(Result::ok);
+    let mut packages: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
     packages.retain(|path| path.join("colcon_build.rc").is_file());
     packages.sort();
     if packages.is_empty() {
@@ -104,17 +102,13 @@ fn package_name(dir: &Path) -> Option<String> {
 }
 
 fn python_tests(package: &str, sources: &[(String, PathBuf)]) -> Vec<ImportedTest> {
-    let Some((_, dir)) = sources.iter().find(|(name, _)| name == package) else {
-        return Vec::new();
-    };
-    let Some(tests) = TEST_DIRS.iter().map(|name| dir.join(name)).find(|dir| dir.is_dir()) else {
-        return Vec::new();
-    };
-    let test = ImportedTest {
+    let dir = sources.iter().find(|(name, _)| name == package).map(|(_, dir)| dir);
+    let test_dirs = dir.iter().flat_map(|dir| TEST_DIRS.map(|name| dir.join(name)));
+    let tests = test_dirs.filter(|dir| dir.is_dir()).take(1).map(|dir| ImportedTest {
         kind: "pytest",
-        subject: tests.to_string_lossy().into_owned(),
+        subject: dir.to_string_lossy().into_owned(),
         comment: Some(format!("The tests of the Python package {package}")),
         ..ImportedTest::default()
-    };
-    vec![test]
+    });
+    tests.collect()
 }

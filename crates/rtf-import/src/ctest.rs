@@ -3,65 +3,59 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
 use crate::error::ImportError;
 
 /// A test of CTest.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Deserialize)]
 pub struct ListedTest {
     pub name: String,
     /// Program and arguments; empty if the program does not exist.
+    #[serde(default)]
     pub command: Vec<String>,
-    /// Properties with their values as texts.
-    properties: Vec<(String, Vec<String>)>,
+    #[serde(default)]
+    properties: Vec<Property>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+struct Property {
+    name: String,
+    #[serde(rename = "value", deserialize_with = "texts")]
+    values: Vec<String>,
 }
 
 impl ListedTest {
     /// The values of a property; none if it is not set.
     pub fn property(&self, name: &str) -> &[String] {
-        let found = self.properties.iter().find(|(known, _)| known == name);
-        found.map_or(&[], |(_, values)| values)
+        let found = self.properties.iter().find(|known| known.name == name);
+        found.map_or(&[], |property| &property.values)
     }
 
     /// The names of its properties.
     pub fn properties(&self) -> impl Iterator<Item = &str> {
-        self.properties.iter().map(|(name, _)| name.as_str())
+        self.properties.iter().map(|property| property.name.as_str())
     }
 
     /// A test for the tests of this module's users.
     #[cfg(test)]
     pub fn new(name: &str, command: &[&str], properties: &[(&str, &str)]) -> Self {
-        let values = |(name, value): &(&str, &str)| {
-            ((*name).to_owned(), value.split(';').map(str::to_owned).collect())
+        let property = |(name, value): &(&str, &str)| Property {
+            name: (*name).to_owned(),
+            values: value.split(';').map(str::to_owned).collect(),
         };
         Self {
             name: name.to_owned(),
             command: command.iter().map(|word| (*word).to_owned()).collect(),
-            properties: properties.iter().map(values).collect(),
+            properties: properties.iter().map(property).collect(),
         }
     }
 }
 
 #[derive(Deserialize)]
 struct Document {
-    tests: Vec<Test>,
-}
-
-#[derive(Deserialize)]
-struct Test {
-    name: String,
-    #[serde(default)]
-    command: Vec<String>,
-    #[serde(default)]
-    properties: Vec<Property>,
-}
-
-#[derive(Deserialize)]
-struct Property {
-    name: String,
-    value: Value,
+    tests: Vec<ListedTest>,
 }
 
 /// Lists the tests of a build directory.
@@ -90,23 +84,21 @@ pub fn list(build: &Path, config: Option<&str>) -> Result<Vec<ListedTest>, Impor
             printed => format!("it printed: {printed}"),
         })
     })?;
-    Ok(document.tests.into_iter().map(listed).collect())
+    Ok(document.tests)
 }
 
-fn listed(test: Test) -> ListedTest {
-    let property = |it: Property| (it.name, texts(&it.value));
-    let properties = test.properties.into_iter().map(property).collect();
-    ListedTest { name: test.name, command: test.command, properties }
-}
-
-fn texts(value: &Value) -> Vec<String> {
-    match value {
-        Value::Array(values) => values.iter().flat_map(texts).collect(),
-        Value::String(text) => vec![text.clone()],
-        // CMake prints 600.0 for 600.
-        Value::Number(number) => vec![number.to_string().trim_end_matches(".0").to_owned()],
-        other => vec![other.to_string()],
+/// The texts of a value, which may be a list.
+fn texts<'de, D: Deserializer<'de>>(input: D) -> Result<Vec<String>, D::Error> {
+    fn texts(value: &Value) -> Vec<String> {
+        match value {
+            Value::Array(values) => values.iter().flat_map(texts).collect(),
+            Value::String(text) => vec![text.clone()],
+            // CMake prints 600.0 for 600.
+            Value::Number(number) => vec![number.to_string().trim_end_matches(".0").to_owned()],
+            other => vec![other.to_string()],
+        }
     }
+    Ok(texts(&Value::deserialize(input)?))
 }
 
 /// The name of the project, or of the directory.

@@ -9,6 +9,7 @@ use rtf_model::Record;
 use serde::Serialize;
 
 use crate::finding::{self, Finding, Rank, RepositoryLocation, Roots};
+use crate::fnv;
 
 #[derive(Serialize)]
 struct Issue {
@@ -66,28 +67,8 @@ fn issue(finding: &Finding, place: RepositoryLocation, number: u32) -> Issue {
     Issue {
         description,
         check_name: format!("rtf-{}", finding.kind),
-        fingerprint: format!("{:032x}", hash(known.as_bytes())),
+        fingerprint: format!("{:032x}", fnv::hash(known.as_bytes())),
         severity,
         location: IssueLocation { path: place.file, lines: LineRange { begin: place.line.max(1) } },
-    }
-}
-
-/// FNV-1a with 128 bits, as its authors publish it: the same in every version
-/// and on every machine, which a hash of the standard library is not.
-fn hash(bytes: &[u8]) -> u128 {
-    const BASIS: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
-    const PRIME: u128 = 0x0000_0000_0100_0000_0000_0000_0000_013b;
-    bytes.iter().fold(BASIS, |hash, byte| (hash ^ u128::from(*byte)).wrapping_mul(PRIME))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::hash;
-
-    /// From the list of the authors' test vectors.
-    #[test]
-    fn the_hash_is_the_published_one() {
-        assert_eq!(hash(b""), 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d);
-        assert_eq!(hash(b"a"), 0xd228_cb69_6f1a_8caf_7891_2b70_4e4a_8964);
     }
 }

@@ -15,16 +15,10 @@ pub fn is_disconnect(error: &io::Error) -> bool {
 
 /// Whether standard output or standard error is a character device, as terminals
 /// are. A closed terminal is not recognised as a terminal any more.
-#[cfg(target_os = "linux")]
 fn writes_to_device() -> bool {
     use std::os::unix::fs::FileTypeExt;
     let is_device = |path| std::fs::metadata(path).is_ok_and(|at| at.file_type().is_char_device());
     is_device("/proc/self/fd/1") || is_device("/proc/self/fd/2")
-}
-
-#[cfg(not(target_os = "linux"))]
-fn writes_to_device() -> bool {
-    false
 }
 
 /// Writes until the reader disconnects, and discards everything after that.

@@ -64,18 +64,15 @@ impl EpisodeResults {
     /// The file cannot be created.
     pub fn create(dir: &Path) -> Result<Self, ReportError> {
         let path = dir.join(EPISODE_RESULTS);
-        match File::create(&path) {
-            Ok(file) => Ok(Self { path, file }),
-            Err(source) => Err(ReportError { what: WHAT, path, source }),
-        }
+        let file = File::create(&path).map_err(ReportError::at(WHAT, &path))?;
+        Ok(Self { path, file })
     }
 
     fn write(&mut self, line: &EpisodeLine) -> Result<(), ReportError> {
         // Numbers and texts always serialise.
         let mut text = serde_json::to_string(line).unwrap_or_default();
         text.push('\n');
-        let error = |source| ReportError { what: WHAT, path: self.path.clone(), source };
-        self.file.write_all(text.as_bytes()).map_err(error)
+        self.file.write_all(text.as_bytes()).map_err(ReportError::at(WHAT, &self.path))
     }
 }
 
@@ -91,10 +88,6 @@ impl Reporter for EpisodeResults {
             }
             _ => Ok(()),
         }
-    }
-
-    fn finish(&mut self, _: &Record) -> Result<(), ReportError> {
-        Ok(())
     }
 }
 

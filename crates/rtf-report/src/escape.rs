@@ -9,30 +9,29 @@ use std::fmt::Write as _;
 /// `\r\n` becomes `\n`.
 #[must_use]
 pub fn block(text: &str) -> Cow<'_, str> {
-    if text.chars().any(|c| c != '\n' && c != '\t' && is_harmful(c)) {
-        Cow::Owned(written_out(&text.replace("\r\n", "\n"), &['\n', '\t']))
-    } else {
-        Cow::Borrowed(text)
-    }
+    escaped(text, &['\n', '\t'])
 }
 
 /// As [`block`], on one line: line breaks and tabs are escaped, too.
 #[must_use]
 pub fn line(text: &str) -> Cow<'_, str> {
-    if text.chars().any(is_harmful) {
-        Cow::Owned(written_out(text, &[]))
-    } else {
-        Cow::Borrowed(text)
-    }
+    escaped(text, &[])
 }
 
 /// As [`line()`], but with tabs: a line of a block.
 #[must_use]
 pub fn line_with_tabs(text: &str) -> Cow<'_, str> {
-    if text.chars().any(|c| c != '\t' && is_harmful(c)) {
-        Cow::Owned(written_out(text, &['\t']))
-    } else {
-        Cow::Borrowed(text)
+    escaped(text, &['\t'])
+}
+
+/// The text with every harmful character written out except those that are kept.
+fn escaped<'a>(text: &'a str, kept: &[char]) -> Cow<'a, str> {
+    if !text.chars().any(|c| is_harmful(c) && !kept.contains(&c)) {
+        return text.into();
+    }
+    match kept.contains(&'\n') {
+        true => written_out(&text.replace("\r\n", "\n"), kept).into(),
+        false => written_out(text, kept).into(),
     }
 }
 

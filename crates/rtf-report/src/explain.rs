@@ -36,6 +36,13 @@ impl Extent {
 /// Receives each line, without its line break.
 pub(crate) type Sink<'a> = &'a mut dyn FnMut(Tone, &str);
 
+/// The lines that `explain` passes on, without their tones.
+pub(crate) fn lines(explain: impl FnOnce(Sink<'_>)) -> Vec<String> {
+    let mut lines = Vec::new();
+    explain(&mut |_, line| lines.push(line.to_owned()));
+    lines
+}
+
 /// Explains why an attempt did not pass: reason, failures, measurements and signals
 /// outside their limits, stacks. Output and leaked processes are not included, nor is
 /// what was reported in a case.

@@ -31,7 +31,7 @@ const GATHERING: Duration = Duration::from_micros(250);
 #[derive(Debug)]
 pub struct Fanout {
     handle: FanoutHandle,
-    thread: JoinHandle<FanoutOutcome>,
+    thread: JoinHandle<Outcome>,
 }
 
 /// Sends events to all reporters. Cheap to clone; events of one handle keep their order.
@@ -66,12 +66,8 @@ pub struct FanoutResult {
     pub errors: Vec<ReportError>,
 }
 
-#[derive(Debug)]
-struct FanoutOutcome {
-    finished: FanoutResult,
-    /// The first violation of the order of events, if the order is checked.
-    disorder: Option<String>,
-}
+/// The result, and the first violation of the order of events, if the order is checked.
+type Outcome = (FanoutResult, Option<String>);
 
 impl Fanout {
     /// Starts the thread.
@@ -81,7 +77,14 @@ impl Fanout {
     pub fn start(reporters: Vec<Box<dyn Reporter>>) -> std::io::Result<Self> {
         let (sender, receiver) = mpsc::channel();
         let backlog = Arc::new(Backlog::default());
-        let state = FanoutState::new(reporters, Arc::clone(&backlog));
+        let state = FanoutState {
+            record: Record::default(),
+            reporters: reporters.into_iter().map(Some).collect(),
+            errors: Vec::new(),
+            order: OrderChecker::default(),
+            disorder: None,
+            backlog: Arc::clone(&backlog),
+        };
         let thread = thread::Builder::new().name("reports".into()).spawn(|| state.run(receiver))?;
         Ok(Self { handle: FanoutHandle { sender, backlog }, thread })
     }
@@ -106,9 +109,10 @@ impl Fanout {
     pub fn join(self) -> FanoutResult {
         drop(self.handle);
         self.thread.thread().unpark();
-        let outcome = self.thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        debug_assert!(outcome.disorder.is_none(), "{}", outcome.disorder.unwrap_or_default());
-        outcome.finished
+        let outcome = self.thread.join();
+        let (result, disorder) = outcome.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        debug_assert!(disorder.is_none(), "{}", disorder.unwrap_or_default());
+        result
     }
 }
 
@@ -145,18 +149,7 @@ impl Drop for FanoutState {
 }
 
 impl FanoutState {
-    fn new(reporters: Vec<Box<dyn Reporter>>, backlog: Arc<Backlog>) -> Self {
-        Self {
-            backlog,
-            record: Record::default(),
-            reporters: reporters.into_iter().map(Some).collect(),
-            errors: Vec::new(),
-            order: OrderChecker::default(),
-            disorder: None,
-        }
-    }
-
-    fn run(mut self, receiver: Receiver<Event>) -> FanoutOutcome {
+    fn run(mut self, receiver: Receiver<Event>) -> Outcome {
         loop {
             match receiver.try_recv() {
                 Ok(event) => self.report(&event),
@@ -174,7 +167,7 @@ impl FanoutState {
         }
         self.each(|reporter, record| reporter.finish(record));
         let (record, errors) = (take(&mut self.record), take(&mut self.errors));
-        FanoutOutcome { finished: FanoutResult { record, errors }, disorder: self.disorder.take() }
+        (FanoutResult { record, errors }, self.disorder.take())
     }
 
     fn report(&mut self, event: &Event) {

@@ -4,12 +4,13 @@
 mod location;
 mod test;
 
-use rtf_model::{HookRunRecord, Record, Severity, SuiteRecord, TestRecord};
+use rtf_model::{HookRunRecord, Record, Severity, SuiteRecord};
 
 pub(crate) use location::{RepositoryLocation, Roots};
+pub(crate) use test::{is_problem, of_test};
 
 use crate::escape;
-use crate::explain::{self, Extent};
+use crate::explain::{self, Extent, Tone};
 use crate::words;
 
 /// How much of a test is explained; code hosts cut long texts.
@@ -72,15 +73,6 @@ pub(crate) fn run_problem(record: &Record) -> Option<String> {
     }
 }
 
-/// Whether a test has findings.
-pub(crate) fn is_problem(record: &Record, test: &TestRecord) -> bool {
-    test::is_problem(record, test)
-}
-
-pub(crate) fn of_test(record: &Record, test: &TestRecord, roots: &Roots<'_>) -> Vec<Finding> {
-    test::of(record, test, roots)
-}
-
 fn of_run(record: &Record, roots: &Roots<'_>) -> Option<Finding> {
     let problem = run_problem(record)?;
     let place = record.suites.first().and_then(|suite| roots.suite(suite));
@@ -116,10 +108,11 @@ fn of_hooks(record: &Record, suite: &SuiteRecord, roots: &Roots<'_>) -> Vec<Find
 }
 
 fn hook_text(run: &HookRunRecord) -> String {
-    let mut lines = vec!["the robot may not be in a safe state".to_owned()];
-    let sink = &mut |_, line: &str| lines.push(line.to_owned());
-    explain::hook(run, EXTENT, sink);
-    explain::block(explain::Tone::Dim, &run.reason, "reason: ", sink);
+    let lines = explain::lines(|sink| {
+        sink(Tone::Bad, "the robot may not be in a safe state");
+        explain::hook(run, EXTENT, sink);
+        explain::block(Tone::Dim, &run.reason, "reason: ", sink);
+    });
     lines.join("\n")
 }
 
@@ -130,12 +123,13 @@ fn of_fixtures(record: &Record, suite: &SuiteRecord, roots: &Roots<'_>) -> Vec<F
             let problems = fixture.problems(suite.plan.tolerates_collapse);
             problems.first()?;
             let about = format!("{}/{}", suite.plan.name, fixture.plan.name);
-            let mut lines: Vec<_> =
-                problems.iter().map(|p| escape::block(p).into_owned()).collect();
-            let sink = &mut |_, line: &str| lines.push(line.to_owned());
-            fixture.messages.iter().take(EXTENT.items).for_each(|m| explain::message(m, sink));
-            explain::left(&fixture.leaked, sink);
-            explain::printed(fixture.log_tail.iter().map(String::as_str), sink);
+            let messages = fixture.messages.iter().take(EXTENT.items);
+            let lines = explain::lines(|sink| {
+                problems.iter().for_each(|problem| sink(Tone::Bad, &escape::block(problem)));
+                messages.for_each(|message| explain::message(message, sink));
+                explain::left(&fixture.leaked, sink);
+                explain::printed(fixture.log_tail.iter().map(String::as_str), sink);
+            });
             Some(Finding {
                 rank: Rank::Bench,
                 kind: "fixture".to_owned(),

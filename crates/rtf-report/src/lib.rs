@@ -24,6 +24,7 @@ pub mod event_stream;
 mod explain;
 mod fanout;
 mod finding;
+mod fnv;
 pub mod github;
 pub mod gitlab;
 mod growth;

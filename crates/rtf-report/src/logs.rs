@@ -12,7 +12,7 @@ use rtf_model::{
     Event, EventKind, FixtureId, HookId, Output, Record, Source, SuiteId, SuitePrepared, TestId,
 };
 
-use crate::{ReportError, Reporter, private_resources};
+use crate::{ReportError, Reporter, explain, private_resources};
 
 const WHAT: &str = "a log";
 
@@ -47,14 +47,8 @@ pub fn attempt_log(record: &Record, id: TestId, number: (u32, u32)) -> PathBuf {
     path(name, attempt)
 }
 
-/// The log of the newest start of a fixture, relative to the run's directory:
+/// The log of one start of a fixture, counted from 1, relative to the run's directory:
 /// `logs/arm.fixture-simulator.a2.log`.
-#[must_use]
-pub fn fixture_log(record: &Record, id: FixtureId) -> PathBuf {
-    fixture_start_log(record, id, record.fixture(id).map_or(1, |fixture| fixture.starts))
-}
-
-/// The log of one start of a fixture, counted from 1, relative to the run's directory.
 #[must_use]
 pub fn fixture_start_log(record: &Record, id: FixtureId, start: u32) -> PathBuf {
     let Some(fixture) = record.fixture(id) else {
@@ -65,15 +59,8 @@ pub fn fixture_start_log(record: &Record, id: FixtureId, start: u32) -> PathBuf 
     path(base(suite, &name, false, &format!("f{id}")), start)
 }
 
-/// The log of the newest run of a hook, relative to the run's directory:
+/// The log of one run of a hook, counted from 1, relative to the run's directory:
 /// `logs/arm.hook-park.a2.log`.
-#[must_use]
-pub fn hook_log(record: &Record, id: HookId) -> PathBuf {
-    let runs = record.hooks.get(id.index()).map_or(1, |hook| hook.runs.len());
-    hook_run_log(record, id, runs)
-}
-
-/// The log of one run of a hook, counted from 1, relative to the run's directory.
 #[must_use]
 pub fn hook_run_log(record: &Record, id: HookId, run: usize) -> PathBuf {
     let Some(hook) = record.hooks.get(id.index()) else {
@@ -85,14 +72,18 @@ pub fn hook_run_log(record: &Record, id: HookId, run: usize) -> PathBuf {
     path(base(suite, &name, false, &format!("h{id}")), run)
 }
 
-/// The log of the newest attempt, start or run of a source, see [`test_log`],
-/// [`fixture_log`] and [`hook_log`].
+/// The log of the newest attempt, start or run of a source.
 #[must_use]
 pub fn log(record: &Record, source: Source) -> PathBuf {
     match source {
         Source::Test(id) => test_log(record, id),
-        Source::Fixture(id) => fixture_log(record, id),
-        Source::Hook(id) => hook_log(record, id),
+        Source::Fixture(id) => {
+            fixture_start_log(record, id, record.fixture(id).map_or(1, |fixture| fixture.starts))
+        }
+        Source::Hook(id) => {
+            let runs = record.hooks.get(id.index()).map_or(1, |hook| hook.runs.len());
+            hook_run_log(record, id, runs)
+        }
     }
 }
 
@@ -162,11 +153,8 @@ impl Logs {
     /// The private resources of a suite.
     fn prepared(&self, prepared: &SuitePrepared, record: &Record) -> Result<(), ReportError> {
         let path = self.folder.join(suite_log(record, prepared.suite));
-        let mut text = String::new();
-        private_resources::show(prepared, &mut |_, line| {
-            text += line;
-            text.push('\n');
-        });
+        let lines = explain::lines(|sink| private_resources::show(prepared, sink));
+        let text = lines.join("\n") + "\n";
         let written = create(&path).and_then(|mut file| file.write_all(text.as_bytes()));
         written.map_err(ReportError::at(WHAT, &path))
     }

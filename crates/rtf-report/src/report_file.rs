@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use rtf_model::{Event, Record};
+use rtf_model::Record;
 
 use crate::{ReportError, Reporter, is_disconnect, output_file};
 
@@ -12,21 +12,9 @@ pub type WriteReport = Box<dyn Fn(&mut dyn Write, &Record) -> io::Result<()> + S
 pub type PrintAnnotations = Box<dyn Fn(&Record) -> io::Result<()> + Send>;
 
 /// Prints annotations on standard error at the end of the run.
-pub struct AnnotationReporter(PrintAnnotations);
-
-impl AnnotationReporter {
-    /// Calls `tell` at the end.
-    #[must_use]
-    pub fn new(tell: PrintAnnotations) -> Self {
-        Self(tell)
-    }
-}
+pub struct AnnotationReporter(pub PrintAnnotations);
 
 impl Reporter for AnnotationReporter {
-    fn event(&mut self, _event: &Event, _record: &Record) -> Result<(), ReportError> {
-        Ok(())
-    }
-
     fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
         match (self.0)(record) {
             Err(error) if is_disconnect(&error) => Ok(()),
@@ -41,10 +29,6 @@ impl Reporter for AnnotationReporter {
 pub struct FailureNotice;
 
 impl Reporter for FailureNotice {
-    fn event(&mut self, _event: &Event, _record: &Record) -> Result<(), ReportError> {
-        Ok(())
-    }
-
     fn reporter_failed(&mut self, error: &ReportError) {
         // The same is said at the end, and by the exit code.
         drop(writeln!(io::stderr(), "error: {error}: {}", error.source));
@@ -71,10 +55,6 @@ impl ReportFile {
 }
 
 impl Reporter for ReportFile {
-    fn event(&mut self, _event: &Event, _record: &Record) -> Result<(), ReportError> {
-        Ok(())
-    }
-
     fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
         output_file::write(self.what, &self.path, |out| (self.write)(out, record))
     }

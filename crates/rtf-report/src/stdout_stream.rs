@@ -9,11 +9,11 @@ use crate::disconnect::UntilDisconnect;
 /// So much may wait before it is written, however busy the run is.
 const PAGE: usize = 16 * 1024;
 
-/// Collects whole lines and writes them together.
+/// Collects lines and writes them together.
 pub(crate) struct LineStream {
     what: &'static str,
     out: UntilDisconnect,
-    /// What waits to be written: always whole lines.
+    /// What waits to be written.
     pub page: Vec<u8>,
 }
 
@@ -21,6 +21,10 @@ impl LineStream {
     /// A stream to `out`; `what` names it in errors.
     pub fn new(what: &'static str, out: Box<dyn Write + Send>) -> Self {
         Self { what, out: UntilDisconnect::new(out), page: Vec::new() }
+    }
+
+    pub fn push(&mut self, text: &str) {
+        self.page.extend_from_slice(text.as_bytes());
     }
 
     pub fn flush_if_long(&mut self) -> Result<(), ReportError> {

@@ -51,7 +51,7 @@ pub fn reporters(
     }
     if request.annotations == Annotations::Github {
         // GitHub reads both outputs, and standard output may be data.
-        reporters.push(Box::new(AnnotationReporter::new(Box::new(annotate))));
+        reporters.push(Box::new(AnnotationReporter(Box::new(annotate))));
     }
     reporters
 }

@@ -45,11 +45,11 @@ pub fn serve(bound: BoundServer, served: Served<'_>) -> Result<WebServer, Failur
         .map_err(failure)?;
     terminal::stderr(|err| {
         if let Some(taken) = server.taken() {
-            let port = server.address().port();
+            let port = server.address.port();
             writeln!(err, "{LABEL}: port {taken} is in use, using port {port}")?;
         }
         writeln!(err, "{LABEL}: {}", server.url())?;
-        match server.fingerprint() {
+        match &server.fingerprint {
             Some(sha) => writeln!(err, "{LABEL}: self-signed certificate, SHA-256 {sha}"),
             None => Ok(()),
         }

@@ -19,7 +19,7 @@ use crate::problem::Problem;
 use crate::runs::{Run, Runs};
 
 /// Maximum number of concurrent event streams.
-const STREAMS: usize = 256;
+pub const STREAMS: usize = 256;
 
 /// The shared state of all handlers. Cheap to clone.
 #[derive(Clone)]
@@ -45,18 +45,7 @@ pub struct App {
     pub files: Arc<Semaphore>,
 }
 
-impl std::fmt::Debug for App {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("App").field("runs", &self.runs).finish_non_exhaustive()
-    }
-}
-
 impl App {
-    #[must_use]
-    pub fn streams() -> Arc<Semaphore> {
-        Arc::new(Semaphore::new(STREAMS))
-    }
-
     /// A permit for sending a file.
     ///
     /// # Errors
@@ -75,7 +64,7 @@ impl App {
         &self,
         run: String,
         view: impl FnOnce(&Run, &Index) -> Result<T, Problem> + Send + 'static,
-    ) -> Result<JsonText, Problem> {
+    ) -> JsonResult {
         let runs = self.runs.clone();
         blocking(move || {
             let run = runs.find(&run)?;
@@ -112,6 +101,8 @@ pub async fn blocking<T: Send + 'static>(
 
 #[derive(Debug)]
 pub struct JsonText(Bytes);
+
+pub type JsonResult = Result<JsonText, Problem>;
 
 impl JsonText {
     /// The text of a value.

@@ -143,7 +143,7 @@ impl Feed {
             return Ok(None);
         }
         let anew = (next > coming).then_some("these events have not happened yet");
-        let offset = if next >= coming { index.offset() } else { index.positions().before(next) };
+        let offset = if next >= coming { index.offset } else { index.positions.before(next) };
         drop(index);
         let (left_out, now) = (None, Instant::now());
         let next = next.min(coming);
@@ -218,7 +218,7 @@ impl Feed {
 impl FeedPosition {
     fn look(&mut self) -> Result<Batch, Problem> {
         let index = self.run.read()?;
-        let (end, coming, state) = (index.offset(), index.next_seq(), index.state());
+        let (end, coming, state) = (index.offset, index.next_seq(), index.state());
         drop(index);
         let mut batch = Batch::default();
         if self.anew.is_none() && end.saturating_sub(self.offset) > BEHIND {

@@ -9,14 +9,10 @@ use tokio::sync::watch;
 /// Notifies the server that the journal has grown.
 #[derive(Clone, Debug)]
 pub struct JournalNotifier {
-    grown: watch::Sender<u64>,
+    pub(crate) grown: watch::Sender<u64>,
 }
 
 impl JournalNotifier {
-    pub(crate) fn new(grown: watch::Sender<u64>) -> Self {
-        Self { grown }
-    }
-
     fn notify(&self, record: &Record) {
         // Never blocks.
         self.grown.send_replace(record.events);

@@ -6,7 +6,7 @@ use rtf_report::journal::parse_event;
 use rtf_report::run_dir::LATEST;
 use serde::Serialize;
 
-use crate::app::{App, JsonText};
+use crate::app::{App, JsonResult};
 use crate::index::{Index, LineReader};
 use crate::problem::Problem;
 use crate::runs::Run;
@@ -26,16 +26,16 @@ struct Status {
 async fn read<T: Serialize>(
     app: App,
     view: impl FnOnce(&Run, &Index) -> Result<T, Problem> + Send + 'static,
-) -> Result<JsonText, Problem> {
+) -> JsonResult {
     let runs = app.runs.clone();
     let current = crate::app::blocking(move || Ok(runs.current())).await?;
     app.read(current.unwrap_or_else(|| LATEST.to_owned()), view).await
 }
 
 /// The suite that runs or ran last, and its tests.
-pub async fn status(State(app): State<App>) -> Result<JsonText, Problem> {
+pub async fn status(State(app): State<App>) -> JsonResult {
     read(app, |_, index| {
-        let record = index.record();
+        let record = &index.record;
         let suite = last(record);
         let tests = suite.map_or(&[][..], |suite| &suite.tests);
         let tests = tests.iter().filter_map(|id| record.tests.get(id.index())).map(number);
@@ -61,16 +61,16 @@ fn number(test: &TestRecord) -> u8 {
 }
 
 /// The last lines of what was reported, as HTML in a JSON string.
-pub async fn update(State(app): State<App>) -> Result<JsonText, Problem> {
+pub async fn update(State(app): State<App>) -> JsonResult {
     read(app, |run, index| {
         let failed = crate::runs::unreadable;
-        let end = index.offset();
-        let start = index.positions().at(end.saturating_sub(END));
+        let end = index.offset;
+        let start = index.positions.at(end.saturating_sub(END));
         let mut lines = LineReader::between(run.journal()?, start, end).map_err(failed)?;
         let mut shown = std::collections::VecDeque::new();
         while let Some(line) = lines.next().map_err(failed)? {
             let event = parse_event(line.text);
-            shown.extend(event.ok().and_then(|event| html(&event, index.record())));
+            shown.extend(event.ok().and_then(|event| html(&event, &index.record)));
             if shown.len() > LINES {
                 shown.pop_front();
             }

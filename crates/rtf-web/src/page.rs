@@ -9,6 +9,7 @@ use axum::middleware::Next;
 use axum::response::{Html, IntoResponse, Response};
 use rust_embed::{EmbeddedFile, RustEmbed};
 
+use crate::header::insert;
 use crate::problem::Problem;
 
 #[derive(RustEmbed)]
@@ -71,9 +72,7 @@ fn asset(name: &str, file: EmbeddedFile) -> Response {
     let keep = if keep { "public, max-age=31536000, immutable" } else { "no-cache" };
     let mut response = file.data.into_response();
     let headers = response.headers_mut();
-    if let Ok(kind) = HeaderValue::from_str(&kind) {
-        headers.insert(header::CONTENT_TYPE, kind);
-    }
+    insert(headers, header::CONTENT_TYPE, &kind);
     headers.insert(header::CACHE_CONTROL, HeaderValue::from_static(keep));
     response
 }

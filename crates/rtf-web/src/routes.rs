@@ -14,7 +14,7 @@ use tower_http::compression::{CompressionLayer, CompressionLevel};
 use tower_service::Service as _;
 
 use crate::access::{self, Access, AccessLog, Hosts, Rules, Secret};
-use crate::app::App;
+use crate::app::{App, STREAMS};
 use crate::connections::{Limits, Peer};
 use crate::runs::Runs;
 use crate::service::{ServeError, Service};
@@ -54,7 +54,7 @@ impl Prepared {
             commands,
             grown: grows,
             ending: ends,
-            streams: App::streams(),
+            streams: Arc::new(Semaphore::new(STREAMS)),
             lingers: Arc::new(OnceLock::new()),
             files: Arc::new(Semaphore::new(limits.files())),
         };
@@ -65,40 +65,21 @@ impl Prepared {
 /// The routes of a server that has no connections.
 #[derive(Debug)]
 pub struct Routes {
-    router: Router,
-    token: String,
-    address: SocketAddr,
+    pub(crate) router: Router,
+    pub token: String,
+    /// The address for the header `Host`.
+    pub address: SocketAddr,
     /// Keep event streams open.
-    _senders: (watch::Sender<bool>, watch::Sender<u64>),
+    pub(crate) _senders: (watch::Sender<bool>, watch::Sender<u64>),
 }
 
 impl Routes {
-    pub(crate) fn new(
-        app: App,
-        token: String,
-        address: SocketAddr,
-        senders: (watch::Sender<bool>, watch::Sender<u64>),
-    ) -> Self {
-        Self { router: router(app), token, address, _senders: senders }
-    }
-
     pub async fn answer(&self, client: SocketAddr, mut request: Request<Body>) -> Response {
         request.extensions_mut().insert(ConnectInfo(Peer(client)));
         match self.router.clone().call(request).await {
             Ok(response) => response,
             Err(never) => match never {},
         }
-    }
-
-    #[must_use]
-    pub fn token(&self) -> &str {
-        &self.token
-    }
-
-    /// The address for the header `Host`.
-    #[must_use]
-    pub fn address(&self) -> SocketAddr {
-        self.address
     }
 }
 

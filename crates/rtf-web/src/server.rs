@@ -37,17 +37,18 @@ pub struct BoundServer {
     token: Secret,
     tls: Option<Tls>,
     hosts: Hosts,
-    remote: bool,
+    rules: Rules,
     limits: Limits,
 }
 
 /// A server that runs.
 #[derive(Debug)]
 pub struct WebServer {
-    address: SocketAddr,
+    pub address: SocketAddr,
     wanted: SocketAddr,
     token: String,
-    fingerprint: Option<String>,
+    /// The SHA-256 of the certificate, when this server signed it itself.
+    pub fingerprint: Option<String>,
     tls: bool,
     ending: watch::Sender<bool>,
     grown: watch::Sender<u64>,
@@ -81,8 +82,8 @@ impl BoundServer {
         let listener = listen(wanted)?;
         let address = listener.local_addr().map_err(ServeError::Start)?;
         let hosts = Hosts::new(address, remote, &settings.hosts);
-        let limits = settings.limits;
-        Ok(Self { listener, address, wanted, token, tls, hosts, remote, limits })
+        let (rules, limits) = (Rules { remote, tls: tls.is_some() }, settings.limits);
+        Ok(Self { listener, address, wanted, token, tls, hosts, rules, limits })
     }
 
     /// Serves in a separate thread.
@@ -90,27 +91,24 @@ impl BoundServer {
     /// # Errors
     /// The thread cannot be started.
     pub fn serve(self, service: Service<'_>) -> Result<WebServer, ServeError> {
-        let Self { listener, address, wanted, token, tls, hosts, remote, limits } = self;
+        let Self { listener, address, wanted, token, tls, hosts, rules, limits } = self;
         let shown = token.text().to_owned();
-        let rules = Rules { remote, tls: tls.is_some() };
-        let access = (token, hosts, rules);
-        let Prepared { app, ending, grown } = Prepared::new(access, limits, service)?;
+        let Prepared { app, ending, grown } =
+            Prepared::new((token, hosts, rules), limits, service)?;
         let lingers = app.lingers.clone();
         let fingerprint = tls.as_ref().and_then(|tls| tls.fingerprint.clone());
-        let (is_tls, token) = (tls.is_some(), shown);
         let run = move || serve(listener, limits, tls, app);
         let thread = std::thread::Builder::new().name("web".into()).spawn(run);
-        let thread = thread.map_err(ServeError::Start)?;
         Ok(WebServer {
             address,
             wanted,
-            token,
+            token: shown,
             fingerprint,
-            tls: is_tls,
+            tls: rules.tls,
             ending,
             grown,
             lingers,
-            thread,
+            thread: thread.map_err(ServeError::Start)?,
         })
     }
 
@@ -119,11 +117,11 @@ impl BoundServer {
     /// # Errors
     /// The thread that reports wrong tokens cannot be started.
     pub fn without_connections(self, service: Service<'_>) -> Result<Routes, ServeError> {
-        let rules = Rules { remote: self.remote, tls: self.tls.is_some() };
         let token = self.token.text().to_owned();
-        let access = (self.token, self.hosts, rules);
+        let access = (self.token, self.hosts, self.rules);
         let Prepared { app, ending, grown } = Prepared::new(access, self.limits, service)?;
-        Ok(Routes::new(app, token, self.address, (ending, grown)))
+        let (router, senders) = (router(app), (ending, grown));
+        Ok(Routes { router, token, address: self.address, _senders: senders })
     }
 }
 
@@ -153,11 +151,6 @@ impl WebServer {
         format!("{scheme}://{host}:{port}/#token={}", self.token)
     }
 
-    #[must_use]
-    pub fn address(&self) -> SocketAddr {
-        self.address
-    }
-
     /// The port that was asked for, when it was taken.
     #[must_use]
     pub fn taken(&self) -> Option<u16> {
@@ -165,16 +158,10 @@ impl WebServer {
         (wanted != 0 && wanted != self.address.port()).then_some(wanted)
     }
 
-    /// The SHA-256 of the certificate, when this server signed it itself.
-    #[must_use]
-    pub fn fingerprint(&self) -> Option<&str> {
-        self.fingerprint.as_deref()
-    }
-
     /// The reporter of the run that is served live.
     #[must_use]
     pub fn live(&self) -> JournalNotifier {
-        JournalNotifier::new(self.grown.clone())
+        JournalNotifier { grown: self.grown.clone() }
     }
 
     /// Announces that the run has ended, and that the server stays for this time.
@@ -263,10 +250,7 @@ fn serve(listener: TcpListener, limits: Limits, tls: Option<Tls>, app: App) -> i
 
 /// Lets the threads of the run go first, where the processor is short.
 fn give_way() {
-    // On Linux this is about the calling thread alone. Elsewhere nothing is done:
-    // it would be about the whole process.
-    if cfg!(target_os = "linux") {
-        // A system that does not allow it serves as well.
-        let _ = rustix::process::setpriority_process(None, NICE);
-    }
+    // On Linux this is about the calling thread alone. A system that does not allow it serves as
+    // well.
+    let _ = rustix::process::setpriority_process(None, NICE);
 }

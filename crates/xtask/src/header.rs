@@ -60,46 +60,17 @@ static inline rtf_text rtf_string(const char *text)
 "#;
 
 /// Why the header could not be written or compared.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum HeaderError {
-    /// The Rust types could not be read.
-    Generate(cbindgen::Error),
-    /// The header could not be read or written.
-    File {
-        /// The header.
-        path: PathBuf,
-        /// The system's reason.
-        source: std::io::Error,
-    },
-    /// The header is not the one that the types make.
-    Differs {
-        /// The header.
-        path: PathBuf,
-    },
-}
-
-impl std::fmt::Display for HeaderError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Generate(_) => write!(f, "cannot make a header from `{SOURCE}`"),
-            Self::File { path, .. } => write!(f, "cannot read or write `{}`", path.display()),
-            Self::Differs { path } => write!(
-                f,
-                "`{}` is not what `{SOURCE}` makes: run `cargo xtask header` and commit it",
-                path.display()
-            ),
-        }
-    }
-}
-
-impl std::error::Error for HeaderError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::Generate(error) => Some(error),
-            Self::File { source, .. } => Some(source),
-            Self::Differs { .. } => None,
-        }
-    }
+    #[error("cannot make a header from `{SOURCE}`")]
+    Generate(#[source] cbindgen::Error),
+    #[error("cannot read or write `{}`", path.display())]
+    File { path: PathBuf, source: std::io::Error },
+    #[error(
+        "`{}` is not what `{SOURCE}` makes: run `cargo xtask header` and commit it",
+        path.display()
+    )]
+    Differs { path: PathBuf },
 }
 
 /// Writes the header, or with `check` compares the one that is there.

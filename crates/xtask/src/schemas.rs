@@ -19,43 +19,23 @@ const FOLDER: &str = "schemas";
 const SHOWN: usize = 5;
 
 /// Why the schemas could not be written, or are not those of the code.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum SchemaError {
-    /// A schema could not be read or written.
-    File {
-        /// Which.
-        path: PathBuf,
-        /// The system's reason.
-        source: io::Error,
-    },
-    /// A schema could not be turned into text.
-    Text(serde_json::Error),
-    /// Schemas are not what the code makes; each with what differs.
+    #[error("cannot read or write `{}`", path.display())]
+    File { path: PathBuf, source: io::Error },
+    #[error("cannot write a schema as text")]
+    Text(#[source] serde_json::Error),
+    /// Each with what differs.
+    #[error(
+        "the schemas are not those of the code: \
+         run `cargo run -p xtask -- schemas` and commit what it changes{}",
+        listed(.0)
+    )]
     Differ(Vec<(PathBuf, String)>),
 }
 
-impl std::fmt::Display for SchemaError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::File { path, .. } => write!(f, "cannot read or write `{}`", path.display()),
-            Self::Text(_) => f.write_str("cannot write a schema as text"),
-            Self::Differ(files) => {
-                let ends = "run `cargo run -p xtask -- schemas` and commit what it changes";
-                write!(f, "the schemas are not those of the code: {ends}")?;
-                files.iter().try_for_each(|(path, what)| write!(f, "\n{}: {what}", path.display()))
-            }
-        }
-    }
-}
-
-impl std::error::Error for SchemaError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::File { source, .. } => Some(source),
-            Self::Text(error) => Some(error),
-            Self::Differ(_) => None,
-        }
-    }
+fn listed(files: &[(PathBuf, String)]) -> String {
+    files.iter().map(|(path, what)| format!("\n{}: {what}", path.display())).collect()
 }
 
 /// Writes the schemas, or with `check` compares those that are there.

@@ -178,7 +178,11 @@ impl Store {
         name: Option<&str>,
     ) -> Result<Vec<CampaignSeries>, StoreError> {
         let all = series(self.selected_campaigns(selection, name)?);
-        Ok(all.into_iter().map(|campaigns| CampaignSeries::new(&campaigns)).collect())
+        let rates = all.into_iter().map(|((file, name, profile, set, space), campaigns)| {
+            let points = campaigns.iter().map(RatePoint::new).collect();
+            CampaignSeries { name, file, profile, set, space, points }
+        });
+        Ok(rates.collect())
     }
 
     /// The changes of the rates of campaigns, the newest first.
@@ -190,8 +194,8 @@ impl Store {
         selection: &RunSelection,
     ) -> Result<Vec<CampaignChange>, StoreError> {
         let mut changes = Vec::new();
-        for campaigns in series(self.selected_campaigns(selection, None)?) {
-            changes.extend(changes_of(&campaigns));
+        for campaigns in series(self.selected_campaigns(selection, None)?).values() {
+            changes.extend(changes_of(campaigns));
         }
         changes.sort_by(|a, b| b.started.cmp(&a.started).then(a.campaign.cmp(&b.campaign)));
         Ok(changes)
@@ -237,30 +241,17 @@ impl EpisodeLine {
     }
 }
 
-/// Groups campaigns, which are the oldest first, by what makes them comparable.
-fn series(campaigns: Vec<(i64, CampaignInfo)>) -> Vec<Vec<CampaignInfo>> {
-    let mut groups: BTreeMap<_, Vec<CampaignInfo>> = BTreeMap::new();
-    for (_, it) in campaigns {
-        let names = (it.file.clone(), it.name.clone(), it.profile.clone(), it.set.clone());
-        groups.entry((names, it.space.clone())).or_default().push(it);
-    }
-    groups.into_values().collect()
-}
+/// What makes campaigns comparable: file, name, profile, parameters of the command line, space.
+type SeriesKey = (String, String, Option<String>, Vec<String>, String);
 
-impl CampaignSeries {
-    /// The series of campaigns, of which there is at least one.
-    fn new(campaigns: &[CampaignInfo]) -> Self {
-        let first = campaigns.first();
-        let text = |of: fn(&CampaignInfo) -> &String| first.map(of).cloned().unwrap_or_default();
-        Self {
-            name: text(|it| &it.name),
-            file: text(|it| &it.file),
-            profile: first.and_then(|it| it.profile.clone()),
-            set: first.map(|it| it.set.clone()).unwrap_or_default(),
-            space: text(|it| &it.space),
-            points: campaigns.iter().map(RatePoint::new).collect(),
-        }
+/// Groups campaigns, which are the oldest first, by what makes them comparable.
+fn series(campaigns: Vec<(i64, CampaignInfo)>) -> BTreeMap<SeriesKey, Vec<CampaignInfo>> {
+    let mut groups = BTreeMap::<_, Vec<CampaignInfo>>::new();
+    for (_, it) in campaigns {
+        let CampaignInfo { file, name, profile, set, space, .. } = it.clone();
+        groups.entry((file, name, profile, set, space)).or_default().push(it);
     }
+    groups
 }
 
 impl RatePoint {

@@ -75,18 +75,11 @@ struct ChangeSearch<'a> {
     profiles: Vec<usize>,
 }
 
-/// Comparable runs: their robot and profile are equal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct GroupKey<'a> {
-    robot: &'a str,
-    profile: Option<&'a str>,
-}
-
 /// Numbers, each with the position of its run.
 type Numbers = Vec<(usize, f64)>;
 
-/// Numbers of comparable runs.
-type Groups<'a> = BTreeMap<GroupKey<'a>, Numbers>;
+/// Numbers of comparable runs: their robot and profile are equal.
+type Groups<'a> = BTreeMap<(&'a str, Option<&'a str>), Numbers>;
 
 impl<'a> ChangeSearch<'a> {
     fn new(scope: &'a RunScope, robots: &'a [String]) -> Self {
@@ -136,9 +129,9 @@ impl<'a> ChangeSearch<'a> {
             }
         }
         let named = groups.into_iter().map(|((robot, _), group)| {
-            let robot = robot.map_or("", |robot| &self.robots[robot]);
+            let robot = robot.map_or("", |robot| self.robots[robot].as_str());
             let profile = self.scope.runs[group[0].0].profile.as_deref();
-            (GroupKey { robot, profile }, group)
+            ((robot, profile), group)
         });
         named.collect()
     }
@@ -150,7 +143,7 @@ impl<'a> ChangeSearch<'a> {
         groups: Groups<'_>,
         changes: &mut Vec<SeriesChange>,
     ) {
-        for (GroupKey { robot, profile }, numbers) in groups {
+        for ((robot, profile), numbers) in groups {
             let values: Vec<f64> = numbers.iter().map(|(_, value)| *value).collect();
             for change in find_change_points(&values, &options).points {
                 let position = |index: usize| numbers[index].0;

@@ -159,7 +159,8 @@ impl Store {
         }
         let rows = Rows::new(rows);
         // Without a filter, a run with a point has a result.
-        let on_robot = scope.has_robot().then(|| columns.runs_of_tests(scope.runs.len()));
+        let on_robot =
+            scope.selection.robot.is_some().then(|| columns.runs_of_tests(scope.runs.len()));
         let Some(range) = scope.id_range() else { return Ok(series) };
         self.for_each_point_column(range, |run, points| {
             let Some(run) = scope.position(run) else { return };
@@ -189,7 +190,7 @@ impl Columns {
         let robots: Vec<_> = results
             .robots
             .iter()
-            .map(|robot| scope.matches_robot(robot).then(|| self.robot(robot)))
+            .map(|robot| scope.selection.matches_robot(robot).then(|| self.robot(robot)))
             .collect();
         self.runs_with_sources[run] = !results.sources.is_empty();
         let mut next = 0;

@@ -13,9 +13,6 @@ use crate::entry::SeriesName;
 use crate::statistics::robust::median;
 use crate::{RunSelection, Store, StoreError, TestIdentity, TestSelection};
 
-/// Number of results of a test by verdict.
-pub type VerdictCounts = RunCounts;
-
 /// Two sets of runs.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[schema(as = HistoryDifferences)]
@@ -40,10 +37,10 @@ pub struct TestComparison {
     pub identity: TestIdentity,
     /// Its verdicts in the first set.
     #[schema(value_type = HashMap<String, u32>)]
-    pub verdicts_a: VerdictCounts,
+    pub verdicts_a: RunCounts,
     /// Its verdicts in the second set.
     #[schema(value_type = HashMap<String, u32>)]
-    pub verdicts_b: VerdictCounts,
+    pub verdicts_b: RunCounts,
     /// Its newest verdict in the first set.
     #[schema(value_type = String)]
     pub last_a: Verdict,
@@ -79,7 +76,7 @@ pub struct NumberChange {
 
 /// A test in one set of runs.
 struct Side {
-    verdicts: VerdictCounts,
+    verdicts: RunCounts,
     last: Verdict,
     duration: Option<f64>,
     numbers: BTreeMap<SeriesName, ColumnSeries>,
@@ -131,7 +128,7 @@ impl Store {
 impl Side {
     fn new(TestColumns { results, series, .. }: TestColumns) -> Option<Self> {
         let last = results.last()?.verdict;
-        let mut verdicts = VerdictCounts::default();
+        let mut verdicts = RunCounts::default();
         results.iter().for_each(|result| verdicts.add(result.verdict));
         let micros = results.iter().filter_map(|result| result.duration_us);
         let seconds: Vec<_> = micros.map(|micros| micros as f64 / 1e6).collect();

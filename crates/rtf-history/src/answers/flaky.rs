@@ -92,7 +92,7 @@ impl Store {
         let is_problem = |it: &&ColumnResult| it.verdict.is_problem() || it.is_flaky;
         let Some(last) = results.iter().rev().find(is_problem) else { return Ok(None) };
         for id in &test.ids {
-            if let Some(row) = self.result_of_test(*id, scope.id(last.run))? {
+            if let Some(row) = self.result_of_test(*id, scope.ids[last.run])? {
                 return Ok(Some(TestResult::new(scope, &ScopedResult { run: last.run, row })));
             }
         }

@@ -22,7 +22,7 @@ mod trend;
 
 pub use campaigns::{CampaignChange, CampaignSeries, EpisodeLine, RatePoint, RateSegment};
 pub use changes::SeriesChange;
-pub use compare::{Comparison, NumberChange, TestComparison, VerdictCounts};
+pub use compare::{Comparison, NumberChange, TestComparison};
 pub use export::{PointLine, ResultLine};
 pub use flaky::{ComparedRuns, FlakyTest, FlakyTests};
 pub use matrix::{MatrixRow, VerdictMatrix, letter};

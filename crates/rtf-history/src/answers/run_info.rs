@@ -75,13 +75,7 @@ impl RunInfo {
 
 /// Number of tests by verdict. Serialised as a map without zeros.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RunCounts([u32; Verdict::ALL.len()]);
-
-impl From<[u32; Verdict::ALL.len()]> for RunCounts {
-    fn from(counts: [u32; Verdict::ALL.len()]) -> Self {
-        Self(counts)
-    }
-}
+pub struct RunCounts(pub(crate) [u32; Verdict::ALL.len()]);
 
 impl RunCounts {
     /// Adds a test.

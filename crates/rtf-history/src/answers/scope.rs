@@ -13,18 +13,13 @@ pub(super) struct RunScope {
     /// The oldest first.
     pub runs: Vec<RunInfo>,
     /// The row of each run.
-    ids: Vec<i64>,
+    pub ids: Vec<i64>,
     /// The position of each run in `runs`.
     positions: HashMap<i64, usize>,
-    selection: RunSelection,
+    pub selection: RunSelection,
 }
 
 impl RunScope {
-    /// The row of a run.
-    pub fn id(&self, position: usize) -> i64 {
-        self.ids[position]
-    }
-
     /// The position of a run in `runs`.
     pub fn position(&self, id: i64) -> Option<usize> {
         self.positions.get(&id).copied()
@@ -33,16 +28,6 @@ impl RunScope {
     /// The smallest and the largest row; `None` without runs.
     pub fn id_range(&self) -> Option<(i64, i64)> {
         Some((self.ids.iter().min().copied()?, self.ids.iter().max().copied()?))
-    }
-
-    /// Whether only results on a robot are meant.
-    pub fn has_robot(&self) -> bool {
-        self.selection.robot.is_some()
-    }
-
-    /// Whether a result on these robots is meant.
-    pub fn matches_robot(&self, robots: &str) -> bool {
-        self.selection.matches_robot(robots)
     }
 }
 

@@ -48,10 +48,10 @@ pub struct SeriesPoint {
     /// Number of numbers.
     pub count: u64,
     /// How many of them are not finite.
-    #[serde(skip_serializing_if = "is_zero")]
+    #[serde(skip_serializing_if = "crate::is_zero")]
     pub not_finite: u64,
     /// How many of them violate their limits.
-    #[serde(skip_serializing_if = "is_zero")]
+    #[serde(skip_serializing_if = "crate::is_zero")]
     pub outside: u64,
     /// The smallest accepted value.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -59,11 +59,6 @@ pub struct SeriesPoint {
     /// The largest accepted value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub high: Option<f64>,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it with a reference")]
-fn is_zero(number: &u64) -> bool {
-    *number == 0
 }
 
 impl TestSeries {

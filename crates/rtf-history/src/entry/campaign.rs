@@ -128,15 +128,6 @@ pub enum CampaignEnd {
 }
 
 impl CampaignEnd {
-    const ALL: [Self; 6] = [
-        Self::Finished,
-        Self::Interrupted,
-        Self::OverBudget,
-        Self::HookFailed,
-        Self::BenchBroken,
-        Self::Unfinished,
-    ];
-
     /// The word, as in the store and in JSON.
     #[must_use]
     pub fn as_str(self) -> &'static str {
@@ -148,12 +139,6 @@ impl CampaignEnd {
             Self::BenchBroken => "bench-broken",
             Self::Unfinished => "unfinished",
         }
-    }
-
-    /// The end with this word.
-    #[must_use]
-    pub fn parse(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|end| end.as_str() == word)
     }
 }
 

@@ -6,6 +6,7 @@ mod results;
 
 use jiff::Timestamp;
 use rtf_model::{Record, RunStarted, RunState, Verdict};
+use serde::{Deserialize, Serialize};
 
 pub use campaign::{CampaignEnd, CampaignEntry, CampaignInfo, EpisodeEntry, interval};
 pub use number::{NumberKind, NumberSummary, SeriesName};
@@ -35,7 +36,7 @@ pub struct RunEntry {
 }
 
 /// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, utoipa::ToSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RunEnd {
     /// By itself.
@@ -49,8 +50,6 @@ pub enum RunEnd {
 }
 
 impl RunEnd {
-    const ALL: [Self; 4] = [Self::Finished, Self::Interrupted, Self::Died, Self::Unfinished];
-
     /// The word, as in the store and in JSON.
     #[must_use]
     pub fn as_str(self) -> &'static str {
@@ -60,12 +59,6 @@ impl RunEnd {
             Self::Died => "died",
             Self::Unfinished => "unfinished",
         }
-    }
-
-    /// The end with this word.
-    #[must_use]
-    pub fn parse(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|end| end.as_str() == word)
     }
 }
 

@@ -3,13 +3,15 @@
 use std::collections::BTreeMap;
 
 use rtf_model::{Measurement, SignalSummary};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::statistics::robust::median;
 
 /// Where the numbers of a series come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, ToSchema)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, ToSchema,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum NumberKind {
     /// Measurements.
@@ -26,12 +28,6 @@ impl NumberKind {
             Self::Measurement => "measurement",
             Self::Signal => "signal",
         }
-    }
-
-    /// The kind with this word.
-    #[must_use]
-    pub fn parse(word: &str) -> Option<Self> {
-        [Self::Measurement, Self::Signal].into_iter().find(|kind| kind.as_str() == word)
     }
 }
 
@@ -99,8 +95,8 @@ impl NumberCollector {
             }
             (known, mean) => mean.or(known),
         };
-        summary.min = smallest([summary.min, signal.min]);
-        summary.max = largest([summary.max, signal.max]);
+        summary.min = [summary.min, signal.min].into_iter().flatten().min_by(f64::total_cmp);
+        summary.max = [summary.max, signal.max].into_iter().flatten().max_by(f64::total_cmp);
         summary.count += signal.count;
         summary.outside += signal.outside;
         (summary.low, summary.high) = (signal.low, signal.high);
@@ -115,14 +111,6 @@ impl NumberCollector {
         });
         measured.chain(self.sampled).collect()
     }
-}
-
-fn smallest(numbers: [Option<f64>; 2]) -> Option<f64> {
-    numbers.into_iter().flatten().min_by(f64::total_cmp)
-}
-
-fn largest(numbers: [Option<f64>; 2]) -> Option<f64> {
-    numbers.into_iter().flatten().max_by(f64::total_cmp)
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use rtf_model::{AttemptRecord, CaseId, Record, RunStarted, TestRecord, Verdict};
 use super::number::{NumberCollector, NumberSummary, SeriesName};
 use crate::statistics::Outcome;
 use crate::statistics::robust::median;
-use crate::{SuiteFileBase, TestAttributes, TestIdentity};
+use crate::{SuiteFileBase, TestIdentity};
 
 /// The result of a test, or of a case, in a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,19 +37,6 @@ pub struct ResultEntry {
     pub source_hash: Option<String>,
     /// Its measurements and signals.
     pub numbers: Vec<(SeriesName, NumberSummary)>,
-}
-
-impl ResultEntry {
-    /// The attributes that filters compare.
-    #[must_use]
-    pub fn attributes(&self) -> TestAttributes {
-        TestAttributes {
-            identity: self.identity.clone(),
-            plugin_type: self.plugin_type.clone(),
-            tags: self.tags.clone(),
-            parameters: self.parameters.clone(),
-        }
-    }
 }
 
 /// The results of all tests of a run, each followed by those of its cases.
@@ -101,7 +88,7 @@ fn add_test(test: &TestRecord, identity: TestIdentity, robot: &str, to: &mut Vec
         parameters: parameters.collect(),
         was: test.plan.was.clone(),
         verdict: test.final_verdict(),
-        is_flaky: test.is_flaky() || Mixture::of(verdicts()).is_mixed(),
+        is_flaky: test.is_flaky() || is_mixed(verdicts()),
         attempts: count(test.attempts.len()),
         problems: count(verdicts().filter(|verdict| verdict.is_problem()).count()),
         duration_us: median_us(durations),
@@ -121,7 +108,7 @@ fn add_test(test: &TestRecord, identity: TestIdentity, robot: &str, to: &mut Vec
             identity,
             was: None,
             verdict: case.verdict,
-            is_flaky: case.is_flaky || case.outcomes.is_mixed(),
+            is_flaky: case.is_flaky || is_mixed(case.verdicts.into_iter()),
             attempts: count(case.durations.len()),
             problems: case.problems,
             duration_us: median_us(case.durations.into_iter()),
@@ -138,33 +125,15 @@ struct CaseSummary {
     reason: Option<String>,
     is_flaky: bool,
     problems: u32,
-    outcomes: Mixture,
+    /// Of each attempt that decides.
+    verdicts: Vec<Verdict>,
     durations: Vec<Duration>,
 }
 
 /// Whether there are passes and failures. A problem of the bench is neither.
-#[derive(Default)]
-struct Mixture {
-    any_passed: bool,
-    any_failed: bool,
-}
-
-impl Mixture {
-    fn of(verdicts: impl Iterator<Item = Verdict>) -> Self {
-        let mut mixture = Self::default();
-        verdicts.for_each(|verdict| mixture.add(verdict));
-        mixture
-    }
-
-    fn add(&mut self, verdict: Verdict) {
-        let outcome = Outcome::of(verdict);
-        self.any_passed |= outcome == Some(Outcome::Passed);
-        self.any_failed |= outcome == Some(Outcome::Failed);
-    }
-
-    fn is_mixed(&self) -> bool {
-        self.any_passed && self.any_failed
-    }
+fn is_mixed(verdicts: impl Iterator<Item = Verdict> + Clone) -> bool {
+    let has = |wanted| verdicts.clone().any(|verdict| Outcome::of(verdict) == Some(wanted));
+    has(Outcome::Passed) && has(Outcome::Failed)
 }
 
 /// The finished cases by path.
@@ -178,7 +147,7 @@ fn cases(test: &TestRecord) -> BTreeMap<String, CaseSummary> {
             reason: reason(),
             is_flaky: false,
             problems: 0,
-            outcomes: Mixture::default(),
+            verdicts: Vec::new(),
             durations: Vec::new(),
         });
         if verdict.is_problem() && !known.verdict.is_problem() {
@@ -186,7 +155,7 @@ fn cases(test: &TestRecord) -> BTreeMap<String, CaseSummary> {
         }
         known.is_flaky |= case.is_flaky();
         known.problems += u32::from(verdict.is_problem());
-        known.outcomes.add(verdict);
+        known.verdicts.push(verdict);
         known.durations.extend(case.duration());
     }
     cases

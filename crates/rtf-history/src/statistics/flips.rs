@@ -62,7 +62,7 @@ pub struct Flips {
     /// Consecutive results of one commit, of one run or of equal sources, equal or not.
     pub pairs: u64,
     /// Those of `pairs` that are comparable only because their sources are equal.
-    #[serde(skip_serializing_if = "is_zero")]
+    #[serde(skip_serializing_if = "crate::is_zero")]
     pub pairs_by_sources: u64,
     /// `passed` of `passed + failed`. `None` without a result.
     pub pass_rate: Option<Rate>,
@@ -70,10 +70,6 @@ pub struct Flips {
     pub flip_rate: Option<Rate>,
     /// `bench` of `passed + failed + bench`. `None` without an attempt.
     pub bench_rate: Option<Rate>,
-}
-
-fn is_zero(count: &u64) -> bool {
-    *count == 0
 }
 
 impl Flips {

@@ -25,20 +25,13 @@ pub struct LearnedLimits {
 }
 
 /// A series is too short to learn limits from it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
+#[error("{used} of {required} values to learn limits")]
 pub struct TooFewValues {
     /// How many finite values there are.
     pub used: usize,
     pub required: usize,
 }
-
-impl std::fmt::Display for TooFewValues {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} of {} values to learn limits", self.used, self.required)
-    }
-}
-
-impl std::error::Error for TooFewValues {}
 
 /// The limits median ± `k` · deviation of `values`.
 ///

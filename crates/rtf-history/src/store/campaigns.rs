@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::database::{Database, DatabaseError, Row, Value};
 use super::json::json;
-use super::read::{list, time};
+use super::read::{list, time, word};
 use super::{ImportOutcome, Keep, Store, StoreError, sql};
 use crate::entry::{CampaignEnd, CampaignEntry, CampaignInfo, EpisodeEntry};
 
@@ -56,7 +56,7 @@ impl Store {
             }
             // A campaign that was resumed has more results, or others later.
             Some((id, episodes, until, _)) if (info.run, ended) > (episodes, until) => {
-                delete(&transaction, id).map_err(failed)?;
+                transaction.delete(&sql::DELETE_CAMPAIGN, id).map_err(failed)?;
                 ImportOutcome::Replaced
             }
             Some(_) => return Ok(ImportOutcome::Known),
@@ -127,29 +127,16 @@ impl Store {
     /// The database cannot be written; then nothing has changed.
     pub fn prune_campaigns(&mut self, keep: Keep) -> Result<Vec<CampaignInfo>, StoreError> {
         let removed = self.find_prunable_campaigns(keep)?;
-        let remove = || {
-            let transaction = self.database.begin()?;
-            for (id, info) in &removed {
-                delete(&transaction, *id)?;
-                let values = [(&info.id).into(), (&info.directory).into()];
-                transaction.execute(sql::INSERT_PRUNED_CAMPAIGN, &values)?;
-            }
-            transaction.commit()
-        };
-        remove().map_err(|error| self.error(error))?;
+        let names = removed.iter().map(|(id, info)| (*id, [&info.id, &info.directory]));
+        self.remove(names, &sql::DELETE_CAMPAIGN, sql::INSERT_PRUNED_CAMPAIGN, &[])?;
         Ok(removed.into_iter().map(|(_, info)| info).collect())
     }
 
     fn find_prunable_campaigns(&self, keep: Keep) -> Result<Vec<(i64, CampaignInfo)>, StoreError> {
-        let all = self.all_campaigns()?;
-        let count = all.len();
         let mut passed_later = HashSet::new();
         let mut prunable = Vec::new();
-        for (index, (id, info)) in all.into_iter().enumerate().rev() {
-            let is_kept = match keep {
-                Keep::Newest(number) => index + number >= count,
-                Keep::Since(time) => info.started >= time,
-            };
+        for (newer, (id, info)) in self.all_campaigns()?.into_iter().rev().enumerate() {
+            let is_kept = keep.keeps(newer, info.started);
             let series = (info.file.clone(), info.name.clone());
             let is_last_pass = info.verdict == "passed" && passed_later.insert(series);
             if !is_kept && !is_last_pass {
@@ -159,10 +146,6 @@ impl Store {
         prunable.reverse();
         Ok(prunable)
     }
-}
-
-fn delete(database: &Database, id: i64) -> Result<(), DatabaseError> {
-    sql::DELETE_CAMPAIGN.iter().try_for_each(|statement| database.execute(statement, &[id.into()]))
 }
 
 fn insert(database: &Database, entry: &CampaignEntry) -> Result<(), DatabaseError> {
@@ -228,7 +211,6 @@ fn insert_episodes(
 }
 
 fn campaign(row: &Row<'_>) -> Result<(i64, CampaignInfo), DatabaseError> {
-    let ended: String = row.get(8)?;
     let rate = match (row.get(29)?, row.get(30)?, row.get(31)?) {
         (Some(value), Some(low), Some(high)) => Some(rtf_statistics::Rate { value, low, high }),
         _ => None,
@@ -241,7 +223,7 @@ fn campaign(row: &Row<'_>) -> Result<(i64, CampaignInfo), DatabaseError> {
         suite_file: row.get(5)?,
         started: time(row.get(6)?),
         ended: time(row.get(7)?),
-        end: CampaignEnd::parse(&ended).unwrap_or(CampaignEnd::Unfinished),
+        end: word(row, 8)?.unwrap_or(CampaignEnd::Unfinished),
         commit: row.get(9)?,
         branch: row.get(10)?,
         dirty: row.get(11)?,

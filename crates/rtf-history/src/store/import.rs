@@ -21,15 +21,6 @@ pub enum ImportOutcome {
     Merged,
 }
 
-/// Whether a run that was pruned is imported.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum PrunedRuns {
-    /// It stays away.
-    Keep,
-    /// It is imported.
-    Restore,
-}
-
 impl Store {
     /// Imports a run that has ended, unless it was pruned.
     ///
@@ -37,7 +28,7 @@ impl Store {
     /// The record is damaged, another run has its identity, or the store cannot be written;
     /// then nothing has changed.
     pub fn import(&mut self, record: &Record) -> Result<ImportOutcome, StoreError> {
-        self.import_entry(&RunEntry::new(record)?, PrunedRuns::Keep)
+        self.import_entry(&RunEntry::new(record)?, false)
     }
 
     /// Imports a run that has ended, even if it was pruned.
@@ -45,73 +36,46 @@ impl Store {
     /// # Errors
     /// As for [`Store::import`].
     pub fn restore(&mut self, record: &Record) -> Result<ImportOutcome, StoreError> {
-        self.import_entry(&RunEntry::new(record)?, PrunedRuns::Restore)
+        self.import_entry(&RunEntry::new(record)?, true)
     }
 
     /// Imports the entry of a run in one transaction.
     fn import_entry(
         &mut self,
         run: &RunEntry,
-        pruned: PrunedRuns,
+        restores: bool,
     ) -> Result<ImportOutcome, StoreError> {
         let failed = |error| StoreError::new(&self.location, error);
         let transaction = self.database.begin().map_err(failed)?;
-        let outcome = if run.started.manifest.parts.is_empty() {
-            match find(&transaction, run, pruned).map_err(failed)? {
-                Found::Nothing => ImportOutcome::Imported,
-                Found::Fewer(id) => {
-                    delete_run(&transaction, id).map_err(failed)?;
-                    ImportOutcome::Replaced
-                }
-                Found::Same => return Ok(ImportOutcome::Known),
-                Found::Pruned => return Ok(ImportOutcome::Pruned),
-                Found::Other => return Err(StoreError::Conflict { id: run.id.clone() }),
-            }
-        } else {
-            ImportOutcome::Merged
-        };
-        let stored = match outcome {
+        if !run.started.manifest.parts.is_empty() {
             // Remembered, so that its journal is not read again.
-            ImportOutcome::Merged => {
-                let values = [(&run.id).into(), (&run.started.run).into()];
-                transaction.execute(sql::INSERT_PRUNED, &values)
+            let values = [(&run.id).into(), (&run.started.run).into()];
+            let remembered = transaction.execute(sql::INSERT_PRUNED, &values);
+            remembered.and_then(|()| transaction.commit()).map_err(failed)?;
+            return Ok(ImportOutcome::Merged);
+        }
+        let id = [(&run.id).into()];
+        let pruned = transaction.rows(sql::FIND_PRUNED, &id, |_| Ok(())).map_err(failed)?;
+        if !pruned.is_empty() && !restores {
+            return Ok(ImportOutcome::Pruned);
+        }
+        let stored = transaction.rows(sql::FIND_RUN, &id, |row| {
+            Ok((row.get::<i64>(0)?, row.get::<u64>(1)?, row.get::<String>(2)?))
+        });
+        let outcome = match stored.map_err(failed)?.pop() {
+            None => ImportOutcome::Imported,
+            Some((_, _, started)) if started != started_text(run) => {
+                return Err(StoreError::Conflict { id: run.id.clone() });
             }
-            _ => insert(&transaction, run),
+            Some((id, events, _)) if events < run.events => {
+                transaction.delete(&sql::DELETE_RUN, id).map_err(failed)?;
+                ImportOutcome::Replaced
+            }
+            Some(_) => return Ok(ImportOutcome::Known),
         };
-        stored.and_then(|()| transaction.commit()).map_err(failed)?;
+        insert(&transaction, run).and_then(|()| transaction.commit()).map_err(failed)?;
         Ok(outcome)
     }
-}
-
-/// What is stored with the identity of a run.
-enum Found {
-    Nothing,
-    /// The run, with fewer events.
-    Fewer(i64),
-    Same,
-    Pruned,
-    Other,
-}
-
-fn find(database: &Database, run: &RunEntry, pruned: PrunedRuns) -> Result<Found, DatabaseError> {
-    let id = [(&run.id).into()];
-    let is_pruned = !database.rows(sql::FIND_PRUNED, &id, |_| Ok(()))?.is_empty();
-    if is_pruned && pruned == PrunedRuns::Keep {
-        return Ok(Found::Pruned);
-    }
-    let stored = database.rows(sql::FIND_RUN, &id, |row| {
-        Ok((row.get::<i64>(0)?, row.get::<u64>(1)?, row.get::<String>(2)?))
-    })?;
-    Ok(match stored.into_iter().next() {
-        None => Found::Nothing,
-        Some((_, _, started)) if started != started_text(run) => Found::Other,
-        Some((id, events, _)) if events < run.events => Found::Fewer(id),
-        Some(_) => Found::Same,
-    })
-}
-
-pub(super) fn delete_run(database: &Database, id: i64) -> Result<(), DatabaseError> {
-    sql::DELETE_RUN.iter().try_for_each(|statement| database.execute(statement, &[id.into()]))
 }
 
 fn insert(database: &Database, run: &RunEntry) -> Result<(), DatabaseError> {

@@ -4,7 +4,8 @@ use std::collections::HashSet;
 
 use jiff::Timestamp;
 
-use super::{Store, StoreError, import, sql};
+use super::database::{DatabaseError, Value};
+use super::{Store, StoreError, sql};
 use crate::answers::RunInfo;
 
 /// Which runs to keep.
@@ -13,6 +14,16 @@ pub enum Keep {
     Newest(usize),
     /// Runs that started at this time or later.
     Since(Timestamp),
+}
+
+impl Keep {
+    /// Whether to keep one that started at this time and has `newer` ones after it.
+    pub(super) fn keeps(self, newer: usize, started: Timestamp) -> bool {
+        match self {
+            Self::Newest(number) => newer < number,
+            Self::Since(time) => started >= time,
+        }
+    }
 }
 
 impl Store {
@@ -31,37 +42,42 @@ impl Store {
     /// The database cannot be written; then nothing has changed.
     pub fn prune(&mut self, keep: Keep) -> Result<Vec<RunInfo>, StoreError> {
         let removed = self.find_prunable(keep)?;
-        let remove = || {
-            let transaction = self.database.begin()?;
-            for (id, run) in &removed {
-                import::delete_run(&transaction, *id)?;
-                let values = [(&run.id).into(), (&run.name).into()];
-                transaction.execute(sql::INSERT_PRUNED, &values)?;
-            }
-            for statement in sql::DELETE_UNUSED {
-                transaction.execute(statement, &[])?;
-            }
-            transaction.commit()
-        };
-        remove().map_err(|error| self.error(error))?;
+        let names = removed.iter().map(|(id, run)| (*id, [&run.id, &run.name]));
+        self.remove(names, &sql::DELETE_RUN, sql::INSERT_PRUNED, &sql::DELETE_UNUSED)?;
         Ok(removed.into_iter().map(|(_, run)| run).collect())
     }
 
-    fn find_prunable(&self, keep: Keep) -> Result<Vec<(i64, RunInfo)>, StoreError> {
-        let runs = self.all_runs()?;
-        let is_kept = |index: usize, run: &RunInfo| match keep {
-            Keep::Newest(number) => index + number >= runs.len(),
-            Keep::Since(time) => run.started >= time,
+    /// Deletes rows with everything that belongs to them, and remembers their names. Then executes
+    /// `finish`.
+    pub(super) fn remove<'a>(
+        &self,
+        rows: impl Iterator<Item = (i64, [&'a String; 2])>,
+        delete: &[&str],
+        remember: &str,
+        finish: &[&str],
+    ) -> Result<(), StoreError> {
+        let remove = || {
+            let transaction = self.database.begin()?;
+            for (id, names) in rows {
+                transaction.delete(delete, id)?;
+                transaction.execute(remember, &names.map(Value::from))?;
+            }
+            finish.iter().try_for_each(|statement| transaction.execute(statement, &[]))?;
+            transaction.commit()
         };
+        remove().map_err(|error: DatabaseError| self.error(error))
+    }
+
+    fn find_prunable(&self, keep: Keep) -> Result<Vec<(i64, RunInfo)>, StoreError> {
         let mut passed_later = HashSet::new();
         let mut prunable = Vec::new();
-        for (index, (id, run)) in runs.iter().enumerate().rev() {
+        for (newer, (id, run)) in self.all_runs()?.into_iter().rev().enumerate() {
             let passed: Vec<i64> =
-                self.rows(sql::PASSED_TESTS_OF_RUN, &[(*id).into()], |row| row.get(0))?;
+                self.rows(sql::PASSED_TESTS_OF_RUN, &[id.into()], |row| row.get(0))?;
             let has_last_pass = passed.iter().any(|test| !passed_later.contains(test));
             passed_later.extend(passed);
-            if !has_last_pass && !is_kept(index, run) {
-                prunable.push((*id, run.clone()));
+            if !has_last_pass && !keep.keeps(newer, run.started) {
+                prunable.push((id, run));
             }
         }
         prunable.reverse();

@@ -2,10 +2,12 @@
 
 use jiff::Timestamp;
 use rtf_model::Verdict;
+use serde::de::value::StringDeserializer;
+use serde::de::{DeserializeOwned, IntoDeserializer as _};
 
 use super::database::{Database, DatabaseError, Row, Value};
 use super::{PackedPoints, PackedResults, Store, StoreError, sql};
-use crate::answers::RunInfo;
+use crate::answers::{RunCounts, RunInfo};
 use crate::entry::{NumberKind, NumberSummary, RunEnd, SeriesName};
 use crate::{TestAttributes, TestIdentity};
 
@@ -208,7 +210,7 @@ pub(super) fn time(micros: i64) -> Timestamp {
     Timestamp::from_microsecond(micros).unwrap_or_default()
 }
 
-pub(super) fn list<T: serde::de::DeserializeOwned>(
+pub(super) fn list<T: DeserializeOwned>(
     row: &Row<'_>,
     index: usize,
 ) -> Result<Vec<T>, DatabaseError> {
@@ -216,20 +218,29 @@ pub(super) fn list<T: serde::de::DeserializeOwned>(
     Ok(serde_json::from_str(&text).unwrap_or_default())
 }
 
+/// A variant of an enumeration by its word; `None` if it has none with this word.
+pub(super) fn word<T: DeserializeOwned>(
+    row: &Row<'_>,
+    index: usize,
+) -> Result<Option<T>, DatabaseError> {
+    let word: String = row.get(index)?;
+    let word: StringDeserializer<serde::de::value::Error> = word.into_deserializer();
+    Ok(T::deserialize(word).ok())
+}
+
 fn run(row: &Row<'_>) -> Result<(i64, RunInfo), DatabaseError> {
     let mut counts = [0; Verdict::ALL.len()];
     for (index, count) in counts.iter_mut().enumerate() {
         *count = row.get(7 + index)?;
     }
-    let ended: String = row.get(5)?;
     let info = RunInfo {
         id: row.get(1)?,
         name: row.get(2)?,
         started: time(row.get(3)?),
         duration: row.get::<i64>(4)? as f64 / 1e6,
-        end: RunEnd::parse(&ended).unwrap_or(RunEnd::Unfinished),
+        end: word(row, 5)?.unwrap_or(RunEnd::Unfinished),
         green: row.get(6)?,
-        counts: counts.into(),
+        counts: RunCounts(counts),
         commit: row.get(15)?,
         branch: row.get(16)?,
         dirty: row.get(17)?,
@@ -266,11 +277,9 @@ fn test(row: &Row<'_>) -> Result<TestRow, DatabaseError> {
 }
 
 fn result(row: &Row<'_>) -> Result<ResultRow, DatabaseError> {
-    let verdict: String = row.get(1)?;
-    let verdict = Verdict::ALL.into_iter().find(|known| known.as_str() == verdict);
     Ok(ResultRow {
         run: row.get(0)?,
-        verdict: verdict.unwrap_or(Verdict::Error),
+        verdict: word(row, 1)?.unwrap_or(Verdict::Error),
         is_flaky: row.get(2)?,
         attempts: row.get(3)?,
         problems: row.get(4)?,
@@ -283,8 +292,7 @@ fn result(row: &Row<'_>) -> Result<ResultRow, DatabaseError> {
 }
 
 pub(super) fn series(row: &Row<'_>) -> Result<(i64, SeriesName), DatabaseError> {
-    let kind: String = row.get(1)?;
-    let kind = NumberKind::parse(&kind).unwrap_or(NumberKind::Measurement);
+    let kind = word(row, 1)?.unwrap_or(NumberKind::Measurement);
     Ok((row.get(0)?, SeriesName { kind, name: row.get(2)?, unit: row.get(3)? }))
 }
 

@@ -187,20 +187,15 @@ fn result_row(test: i64, run: i64, result: &ResultEntry) -> [Value<'_>; 11] {
     ]
 }
 
+/// The rows of series, by the row of their test and their name.
+type SeriesRows = HashMap<(i64, SeriesName), i64>;
+
 /// The rows of the series of the results; adds those that are new.
-fn series(
-    database: &Database,
-    results: &Results<'_>,
-) -> Result<HashMap<(i64, SeriesName), i64>, DatabaseError> {
+fn series(database: &Database, results: &Results<'_>) -> Result<SeriesRows, DatabaseError> {
     let with_numbers = results.iter().filter(|(_, result)| !result.numbers.is_empty());
     let tests: Vec<_> = with_numbers.map(|(test, _)| Value::Int(*test)).collect();
     let mut known = HashMap::new();
-    let mut remember = |row: &Row<'_>| {
-        let (id, name) = read::series(row)?;
-        known.insert((row.get(4)?, name), id);
-        Ok(())
-    };
-    database.batch(&sql::FIND_SERIES, &tests, &mut remember)?;
+    database.batch(&sql::FIND_SERIES, &tests, &mut |row| remember(row, &mut known))?;
     let mut added = Vec::new();
     for (test, result) in results {
         for (name, _) in &result.numbers {
@@ -215,11 +210,12 @@ fn series(
             }
         }
     }
-    let mut remember = |row: &Row<'_>| {
-        let (id, name) = read::series(row)?;
-        known.insert((row.get(4)?, name), id);
-        Ok(())
-    };
-    database.batch(&sql::INSERT_SERIES, &added, &mut remember)?;
+    database.batch(&sql::INSERT_SERIES, &added, &mut |row| remember(row, &mut known))?;
     Ok(known)
+}
+
+fn remember(row: &Row<'_>, series: &mut SeriesRows) -> Result<(), DatabaseError> {
+    let (id, name) = read::series(row)?;
+    series.insert((row.get(4)?, name), id);
+    Ok(())
 }

@@ -14,7 +14,7 @@ use rtf_model::{
 };
 
 pub(crate) use source::{CaseSource, sources};
-pub(crate) use totals::CaseTotals;
+pub(crate) use totals::{CaseTotals, describe as describe_counts};
 
 /// The reason of a case that was running when the run ended.
 const CUT_SHORT: &str = "the run ended before the case did";
@@ -29,7 +29,7 @@ pub(crate) struct TestCases<'r> {
     problems: HashMap<(usize, CaseId), CaseProblems<'r>>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct CaseResult<'r> {
     /// Its name, after those of the cases that contain it.
     pub path: &'r str,
@@ -167,15 +167,7 @@ impl<'r> CaseResult<'r> {
     }
 
     fn not_run(path: &'r str) -> Self {
-        Self {
-            path,
-            record: None,
-            duration: Duration::ZERO,
-            parent: None,
-            is_container: false,
-            is_problem: false,
-            attempt: 0,
-        }
+        Self { path, ..Self::default() }
     }
 }
 

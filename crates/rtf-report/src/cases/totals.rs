@@ -41,11 +41,16 @@ impl CaseTotals {
 
     /// `6 passed, 1 crashed, 33 did not run`; empty without cases.
     pub fn describe(&self) -> String {
-        let by_verdict = Verdict::ALL.map(|verdict| (self.of(verdict), verdict.as_str()));
-        let counts = by_verdict.into_iter().chain([(self.not_run, "did not run")]);
-        let counts = counts.filter(|(count, _)| *count > 0);
-        counts.map(|(count, word)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
+        describe(|verdict| self.of(verdict), self.not_run)
     }
+}
+
+/// `6 passed, 1 crashed, 33 did not run`, without those that are 0.
+pub(crate) fn describe(finished: impl Fn(Verdict) -> u64, not_run: u64) -> String {
+    let by_verdict = Verdict::ALL.map(|verdict| (finished(verdict), verdict.as_str()));
+    let counts = by_verdict.into_iter().chain([(not_run, "did not run")]);
+    let counts = counts.filter(|(count, _)| *count > 0);
+    counts.map(|(count, word)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
 }
 
 impl std::ops::AddAssign for CaseTotals {

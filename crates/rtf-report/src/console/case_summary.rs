@@ -2,7 +2,7 @@
 
 use rtf_model::{Record, Significance, TestRecord, Verdict};
 
-use super::ConsoleOptions;
+use super::options::View;
 use super::page::ConsoleLines;
 use super::style::{self, BAD, BOLD, LOUD};
 use crate::cases::{CaseResult, TestCases};
@@ -14,21 +14,21 @@ const CASES: usize = 20;
 /// Lists the cases of a test that did not pass.
 pub(super) fn failed_cases(
     page: &mut ConsoleLines,
-    options: &ConsoleOptions,
-    record: &Record,
-    (test, cases): (&TestRecord, &TestCases<'_>),
+    view: View<'_>,
+    test: &TestRecord,
+    cases: &TestCases<'_>,
 ) {
     let failed: Vec<_> = cases.results.iter().filter(|case| case.is_problem).collect();
     for case in failed.iter().take(CASES) {
-        failed_case(page, options, record, (test, cases, case));
+        failed_case(page, view, (test, cases, case));
     }
     if failed.len() > CASES {
         page.line(&format!("    … and {} more cases that did not pass", failed.len() - CASES));
     }
-    if known_failure::has_red_cases(record, test) {
+    if known_failure::has_red_cases(view.record, test) {
         let skipped = cases.results.iter().filter(|case| case.verdict() == Some(Verdict::Skipped));
         for case in skipped.take(CASES) {
-            failed_case(page, options, record, (test, cases, case));
+            failed_case(page, view, (test, cases, case));
         }
     }
     let not_run = cases.totals().not_run;
@@ -39,8 +39,7 @@ pub(super) fn failed_cases(
 
 fn failed_case(
     page: &mut ConsoleLines,
-    options: &ConsoleOptions,
-    record: &Record,
+    View { options, record }: View<'_>,
     (test, cases, case): (&TestRecord, &TestCases<'_>, &CaseResult<'_>),
 ) {
     let verdict = case.verdict().unwrap_or(Verdict::Skipped);
@@ -58,14 +57,13 @@ fn failed_case(
 }
 
 /// Lists tests that passed although a failure is expected.
-pub(super) fn unexpected(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Record) {
+pub(super) fn unexpected(page: &mut ConsoleLines, View { options, record }: View<'_>) {
     let is_unexpected = |test: &&TestRecord| test.significance() == Significance::UnexpectedPass;
     let mut tests = record.tests.iter().filter(is_unexpected).peekable();
     if tests.peek().is_none() {
         return;
     }
-    page.line("");
-    page.line(&style::paint(BOLD, "tests that passed although a failure is expected:"));
+    page.heading(BOLD, "tests that passed although a failure is expected:");
     for test in tests {
         let name = escape::line(&record.full_name(test.plan.test)).into_owned();
         page.line(&format!("  {}", style::paint(BAD, &name)));
@@ -83,8 +81,7 @@ pub(super) fn known(page: &mut ConsoleLines, record: &Record) {
     if tests.peek().is_none() {
         return;
     }
-    page.line("");
-    page.line(&style::paint(BOLD, "known failures, which do not make the run red:"));
+    page.heading(BOLD, "known failures, which do not make the run red:");
     for test in tests {
         let name = style::paint(LOUD, &escape::line(&record.full_name(test.plan.test)));
         let (word, verdict) = (known_failure::word(test), test.final_verdict());

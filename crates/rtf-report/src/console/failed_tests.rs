@@ -4,24 +4,25 @@ use std::path::Path;
 
 use rtf_model::{Attachment, Phase, Record, Significance, TestRecord, Verdict};
 
+use super::case_summary;
+use super::options::{ReplayCommand, View};
 use super::page::ConsoleLines;
 use super::style::{self, BOLD};
-use super::{ConsoleOptions, ReplayCommand, case_summary};
 use crate::cases::TestCases;
 use crate::{escape, explain, known_failure, logs, words};
 
 /// The endings of recordings that a fixture can replay.
 const RECORDINGS: [&str; 3] = [".mcap", ".bag", ".tar.gz"];
 
-pub(super) fn show(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Record) {
+pub(super) fn show(page: &mut ConsoleLines, view: View<'_>) {
+    let record = view.record;
     let failed: Vec<_> = record.tests.iter().filter(|test| is_failed(record, test)).collect();
     if failed.is_empty() {
         return;
     }
-    page.line("");
-    page.line(&style::paint(BOLD, "tests that did not pass:"));
+    page.heading(BOLD, "tests that did not pass:");
     for test in failed {
-        failed_test(page, options, record, test);
+        failed_test(page, view, test);
     }
 }
 
@@ -36,12 +37,8 @@ fn is_failed(record: &Record, test: &TestRecord) -> bool {
     is_listed && !record.is_test_green(test)
 }
 
-fn failed_test(
-    page: &mut ConsoleLines,
-    options: &ConsoleOptions,
-    record: &Record,
-    test: &TestRecord,
-) {
+fn failed_test(page: &mut ConsoleLines, view: View<'_>, test: &TestRecord) {
+    let View { options, record } = view;
     let id = test.plan.test;
     let attempt = test.decisive_attempt();
     let cases = TestCases::of(test);
@@ -72,7 +69,7 @@ fn failed_test(
         page.fact("replay", &escape::line(&command));
     }
     if let Some(cases) = &cases {
-        case_summary::failed_cases(page, options, record, (test, cases));
+        case_summary::failed_cases(page, view, test, cases);
     }
 }
 

@@ -6,20 +6,16 @@ use rtf_model::{
     Verdict,
 };
 
+use super::options::View;
 use super::page::ConsoleLines;
 use super::result_details::EXTENT;
 use super::style::{self, BAD, BOLD, DIM, LOUD};
-use super::{ConsoleOptions, Verbosity, fixture_values, hooks, questions, results};
+use super::{Verbosity, fixture_values, hooks, questions, results};
 use crate::explain::{self, Tone};
 use crate::{ReportError, cause, escape, logs, private_resources, words};
 
-pub(super) fn show(
-    page: &mut ConsoleLines,
-    options: &ConsoleOptions,
-    event: &Event,
-    record: &Record,
-) {
-    let live = Live { options, record };
+pub(super) fn show(page: &mut ConsoleLines, live: View<'_>, event: &Event) {
+    let View { options, record } = live;
     let quiet = options.verbosity == Verbosity::Quiet;
     if record.events == 1 {
         damage(page, record);
@@ -53,7 +49,7 @@ pub(super) fn show(
             live.fixture_message(page, *fixture, message);
         }
         kind @ (EventKind::QuestionAsked(_) | EventKind::QuestionClosed(_)) if !quiet => {
-            questions::show(page, options, record, kind);
+            questions::show(page, live, kind);
         }
         EventKind::FaultInjected(fault) if !quiet => live.fault(page, fault, event.at),
         EventKind::TestSlow { test } => live.slow(page, *test, event.at),
@@ -65,10 +61,10 @@ pub(super) fn show(
             page.remark((LOUD, "stack"), &live.fixture(*fixture));
             explain::stack(text, EXTENT, &mut |tone, line| page.detail(tone, line));
         }
-        EventKind::CaseFinished(end) => results::case_finished(page, options, record, end),
-        EventKind::TestFinished(end) => results::test_finished(page, options, record, end),
+        EventKind::CaseFinished(end) => results::case_finished(page, live, end),
+        EventKind::TestFinished(end) => results::test_finished(page, live, end),
         EventKind::TestSkipped { test, reason } if !quiet => live.skipped(page, *test, reason),
-        EventKind::HookFinished { hook, .. } => hooks::finished(page, options, record, *hook),
+        EventKind::HookFinished { hook, .. } => hooks::finished(page, live, *hook),
         EventKind::RunnerDied { reason, leaked } => {
             page.remark((BAD, "RUNNER DIED"), &escape::line(reason));
             explain::left(leaked, &mut |tone, line| page.detail(tone, line));
@@ -117,12 +113,7 @@ fn episode(page: &mut ConsoleLines, episode: &Episode) {
     page.remark((BOLD, "episode"), &escape::line(&text));
 }
 
-struct Live<'a> {
-    options: &'a ConsoleOptions,
-    record: &'a Record,
-}
-
-impl Live<'_> {
+impl View<'_> {
     fn warning(&self, page: &mut ConsoleLines) {
         let Some(warning) = self.record.warnings.last() else { return };
         let place = warning.labels.first().map(|label| {

@@ -39,6 +39,7 @@ use crate::background_writer::BackgroundWriter;
 use crate::disconnect::UntilDisconnect;
 use crate::progress_bar::{Bar, BarState};
 use crate::{ReportError, Reporter, words};
+use options::View;
 use page::ConsoleLines;
 use progress::Progress;
 use questions::QuestionPrompt;
@@ -110,7 +111,7 @@ impl Console {
     /// Shows which question can be answered, and passes it to the person.
     fn update_question(&mut self, event: &Event, record: &Record) -> Result<(), ReportError> {
         let Self { prompt, page, options, .. } = self;
-        let Some(text) = prompt.update(page, options, (&event.kind, record)) else {
+        let Some(text) = prompt.update(page, View { options, record }, &event.kind) else {
             return Ok(());
         };
         self.flush(event.at)?;
@@ -124,16 +125,16 @@ impl Console {
     fn flush(&mut self, at: Micros) -> Result<(), ReportError> {
         self.written = at;
         self.page.end_entry();
-        if self.page.len() == 0 {
+        if self.page.text.is_empty() {
             return Ok(());
         }
         let Self { out, page, bar, background, .. } = self;
         let written = bar.around(|| {
-            out.write_all(page.as_bytes())?;
+            out.write_all(page.text.as_bytes())?;
             // A background writer is flushed only at the end.
             if background.is_none() { out.flush() } else { Ok(()) }
         });
-        self.page.clear();
+        self.page.text.clear();
         written.map_err(failed)
     }
 
@@ -170,14 +171,14 @@ impl Reporter for Console {
         if self.options.verbosity == Verbosity::Verbose {
             self.show_verbose(event, record);
         }
-        live::show(&mut self.page, &self.options, event, record);
+        live::show(&mut self.page, View { options: &self.options, record }, event);
         let bar = self.progress.event(event, record);
         bar.iter().for_each(|state| self.show_bar(state));
         if matches!(event.kind, EventKind::QuestionAsked(_) | EventKind::QuestionClosed(_)) {
             self.update_question(event, record)?;
         }
         let is_late = event.at.since(self.written) > PATIENCE;
-        if is_late || self.page.len() > PAGE { self.flush(event.at) } else { Ok(()) }
+        if is_late || self.page.text.len() > PAGE { self.flush(event.at) } else { Ok(()) }
     }
 
     fn idle(&mut self, record: &Record) -> Result<(), ReportError> {
@@ -194,7 +195,7 @@ impl Reporter for Console {
         bar.iter().for_each(|state| self.show_bar(state));
         self.report_left_out();
         self.verbose.flush(&mut self.page, record);
-        summary::show(&mut self.page, &self.options, record);
+        summary::show(&mut self.page, View { options: &self.options, record });
         self.flush(record.last_at)?;
         let written = self.out.flush();
         written.map_err(failed)

@@ -79,6 +79,13 @@ impl Default for ConsoleOptions {
     }
 }
 
+/// The options, and the run that is shown.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub options: &'a ConsoleOptions,
+    pub record: &'a Record,
+}
+
 /// `rtf run SUITE::TEST` or `rtf run SUITE::TEST/CASE`, or `rtf run PLUGIN` for a plug-in
 /// given on the command line.
 #[must_use]

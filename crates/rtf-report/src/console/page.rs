@@ -22,7 +22,8 @@ const CHARS: usize = 400;
 /// Lines that wait to be written.
 #[derive(Debug, Default)]
 pub(super) struct ConsoleLines {
-    text: String,
+    /// What waits.
+    pub text: String,
     /// Where all details are shown; without it, this does.
     everything: Option<String>,
     /// The number of details of the entry.
@@ -39,6 +40,12 @@ impl ConsoleLines {
     pub fn line(&mut self, text: &str) {
         self.end_entry();
         self.push(text);
+    }
+
+    /// The heading of a list at the end of the run.
+    pub fn heading(&mut self, style: Style, text: &str) {
+        self.line("");
+        self.line(&style::paint(style, text));
     }
 
     fn push(&mut self, text: &str) {
@@ -101,19 +108,6 @@ impl ConsoleLines {
         let label = style::paint(style::DIM, &format!("{label:<6}"));
         self.line(&format!("      {label}  {text}"));
     }
-
-    /// How many bytes wait.
-    pub fn len(&self) -> usize {
-        self.text.len()
-    }
-
-    pub fn as_bytes(&self) -> &[u8] {
-        self.text.as_bytes()
-    }
-
-    pub fn clear(&mut self) {
-        self.text.clear();
-    }
 }
 
 #[cfg(test)]
@@ -121,8 +115,8 @@ mod tests {
     use super::*;
 
     fn lines(page: &ConsoleLines) -> Vec<String> {
-        let text = String::from_utf8_lossy(page.as_bytes());
-        anstream::adapter::strip_str(&text).to_string().lines().map(str::to_owned).collect()
+        let text = anstream::adapter::strip_str(&page.text).to_string();
+        text.lines().map(str::to_owned).collect()
     }
 
     #[test]

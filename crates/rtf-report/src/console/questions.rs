@@ -3,7 +3,7 @@
 
 use rtf_model::{EventKind, Micros, Question, QuestionRecord, Record, TestId};
 
-use super::ConsoleOptions;
+use super::options::View;
 use super::page::ConsoleLines;
 use super::style::{self, BOLD, LOUD};
 use crate::explain::{self, Tone};
@@ -35,21 +35,21 @@ impl QuestionPrompt {
     pub fn update(
         &mut self,
         page: &mut ConsoleLines,
-        options: &ConsoleOptions,
-        (kind, record): (&EventKind, &Record),
+        view: View<'_>,
+        kind: &EventKind,
     ) -> Option<Option<String>> {
         self.operator.as_ref()?;
-        let next = oldest(record);
+        let next = oldest(view.record);
         if next == self.current {
             return None;
         }
         let is_shown = matches!((kind, &next), (EventKind::QuestionAsked(asked), Some(next))
             if asked.test == next.test && asked.question == next.question);
         if let Some(next) = next.as_ref().filter(|_| !is_shown) {
-            asked(page, options, record, (next.test, &next.question));
+            asked(page, view, next.test, &next.question);
         }
         self.current = next;
-        Some(self.current.as_ref().map(|asked| prompt(record, asked.test)))
+        Some(self.current.as_ref().map(|asked| prompt(view.record, asked.test)))
     }
 
     /// Passes the question to the person.
@@ -86,12 +86,8 @@ fn oldest(record: &Record) -> Option<AskedHere> {
 }
 
 /// Shows a question.
-fn asked(
-    page: &mut ConsoleLines,
-    options: &ConsoleOptions,
-    record: &Record,
-    (test, question): (TestId, &Question),
-) {
+fn asked(page: &mut ConsoleLines, view: View<'_>, test: TestId, question: &Question) {
+    let View { options, record } = view;
     page.remark((BOLD, "question"), &escape::line(&record.full_name(test)));
     let sink = &mut |tone, line: &str| page.detail(tone, line);
     explain::block(Tone::Plain, &question.text, "", sink);
@@ -117,15 +113,10 @@ fn answers(question: &Question) -> String {
 }
 
 /// Shows the start or the end of a question.
-pub(super) fn show(
-    page: &mut ConsoleLines,
-    options: &ConsoleOptions,
-    record: &Record,
-    kind: &EventKind,
-) {
+pub(super) fn show(page: &mut ConsoleLines, view: View<'_>, kind: &EventKind) {
     match kind {
-        EventKind::QuestionAsked(it) => asked(page, options, record, (it.test, &it.question)),
-        EventKind::QuestionClosed(it) => closed(page, record, it.test, &it.summary()),
+        EventKind::QuestionAsked(it) => asked(page, view, it.test, &it.question),
+        EventKind::QuestionClosed(it) => closed(page, view.record, it.test, &it.summary()),
         _ => {}
     }
 }

@@ -5,11 +5,11 @@ use rtf_model::{
     TestRecord, Verdict,
 };
 
+use super::options::{Verbosity, View};
 use super::page::ConsoleLines;
 use super::result_details::{self, EXTENT};
 use super::style::{self, BAD, LOUD};
-use super::{ConsoleOptions, Verbosity};
-use crate::cases::CaseProblems;
+use crate::cases::{CaseProblems, describe_counts};
 use crate::explain::{self, Tone};
 use crate::{escape, known_failure, logs, words};
 
@@ -17,12 +17,8 @@ use crate::{escape, known_failure, logs, words};
 const CASES: u64 = 100;
 
 /// Shows a case that did not pass, in the attempt in which it ran.
-pub(super) fn case_finished(
-    page: &mut ConsoleLines,
-    options: &ConsoleOptions,
-    record: &Record,
-    end: &CaseFinished,
-) {
+pub(super) fn case_finished(page: &mut ConsoleLines, view: View<'_>, end: &CaseFinished) {
+    let View { options, record } = view;
     if !end.verdict.is_problem() || end.carried {
         return;
     }
@@ -62,12 +58,8 @@ pub(super) fn case_line(
     page.entry(word, &time, &escape::line(&name));
 }
 
-pub(super) fn test_finished(
-    page: &mut ConsoleLines,
-    options: &ConsoleOptions,
-    record: &Record,
-    finished: &TestFinished,
-) {
+pub(super) fn test_finished(page: &mut ConsoleLines, view: View<'_>, finished: &TestFinished) {
+    let View { options, record } = view;
     let Some(test) = record.tests.get(finished.test.index()) else { return };
     let Some(attempt) = test.attempts.last() else { return };
     let name = attempt_name(record, test, (attempt, finished));
@@ -90,7 +82,7 @@ pub(super) fn test_finished(
     if known || skipped_itself || finished.verdict.is_green() {
         return result_details::leaked(page, &name, &attempt.leaked);
     }
-    problem(page, options, record, (test, attempt));
+    problem(page, view, test, attempt);
 }
 
 fn attempt_name(
@@ -130,12 +122,8 @@ fn advice(record: &Record, test: &TestRecord, finished: &TestFinished) -> Option
     is_green.then(|| known_failure::red_reason(record, test)).flatten()
 }
 
-fn problem(
-    page: &mut ConsoleLines,
-    options: &ConsoleOptions,
-    record: &Record,
-    (test, attempt): (&TestRecord, &AttemptRecord),
-) {
+fn problem(page: &mut ConsoleLines, view: View<'_>, test: &TestRecord, attempt: &AttemptRecord) {
+    let View { options, record } = view;
     let sink = &mut |tone, line: &str| page.detail(tone, line);
     explain::explain(attempt, EXTENT, sink);
     case_counts(attempt, sink);
@@ -152,13 +140,8 @@ fn case_counts(attempt: &AttemptRecord, sink: explain::Sink<'_>) {
     if cases.total() == 0 {
         return;
     }
-    let by_verdict = Verdict::ALL.map(|verdict| (cases.of(verdict), verdict.as_str()));
-    let counts = by_verdict.into_iter().chain([(cases.not_run().len() as u64, "did not run")]);
-    let counts: Vec<_> = counts
-        .filter(|(count, _)| *count > 0)
-        .map(|(count, word)| format!("{count} {word}"))
-        .collect();
-    sink(Tone::Plain, &format!("{}: {}", words::count(cases.total(), "case"), counts.join(", ")));
+    let counts = describe_counts(|verdict| cases.of(verdict), cases.not_run().len() as u64);
+    sink(Tone::Plain, &format!("{}: {counts}", words::count(cases.total(), "case")));
     let problems = attempt.cases.problems();
     if problems > CASES {
         let more = words::count(problems - CASES, "more case");

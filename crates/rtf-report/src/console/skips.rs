@@ -25,8 +25,7 @@ pub(super) fn by_runner(page: &mut ConsoleLines, record: &Record) {
     if reasons.is_empty() {
         return;
     }
-    page.line("");
-    page.line(&style::paint(BOLD, "skipped tests:"));
+    page.heading(BOLD, "skipped tests:");
     for (reason, tests) in reasons {
         let name = |id: &TestId| escape::line(&record.full_name(*id)).into_owned();
         let names: Vec<_> = tests.iter().map(name).collect();
@@ -57,8 +56,7 @@ pub(super) fn by_themselves(page: &mut ConsoleLines, record: &Record) {
     if reasons.is_empty() {
         return;
     }
-    page.line("");
-    page.line(&style::paint(BOLD, "skipped themselves:"));
+    page.heading(BOLD, "skipped themselves:");
     for ((reason, noun), names) in reasons {
         list(page, noun, reason, &names);
     }

@@ -3,9 +3,10 @@
 
 use rtf_model::Record;
 
+use super::options::View;
 use super::page::ConsoleLines;
 use super::style::{self, BAD, BOLD, GOOD, LOUD};
-use super::{ConsoleOptions, case_summary, failed_tests, hooks, skips};
+use super::{case_summary, failed_tests, hooks, skips};
 use crate::growth::{self, Growing, Within};
 use crate::repetition_summary::Repeated;
 use crate::retried::Retried;
@@ -17,11 +18,12 @@ const HISTOGRAM: usize = 10;
 /// Maximum number of leaked processes that are listed.
 const PROCESSES: usize = 50;
 
-pub(super) fn show(page: &mut ConsoleLines, options: &ConsoleOptions, record: &Record) {
-    hooks::summary(page, options, record);
+pub(super) fn show(page: &mut ConsoleLines, view: View<'_>) {
+    let View { options, record } = view;
+    hooks::summary(page, view);
     problems(page, record);
-    failed_tests::show(page, options, record);
-    case_summary::unexpected(page, options, record);
+    failed_tests::show(page, view);
+    case_summary::unexpected(page, view);
     case_summary::known(page, record);
     flaky(page, record);
     repeated(page, record);
@@ -48,8 +50,7 @@ fn problems(page: &mut ConsoleLines, record: &Record) {
     if problems.is_empty() {
         return;
     }
-    page.line("");
-    page.line(&style::paint(BOLD, "problems outside the tests:"));
+    page.heading(BOLD, "problems outside the tests:");
     for same in problems.chunk_by(|a, b| a == b) {
         let times = if same.len() > 1 { format!(" ({} times)", same.len()) } else { String::new() };
         page.line(&format!("  {}{times}", style::paint(BAD, &same[0])));
@@ -63,8 +64,7 @@ fn flaky(page: &mut ConsoleLines, record: &Record) {
         return;
     }
     let style = if record.flaky_fails() { BAD } else { LOUD };
-    page.line("");
-    page.line(&style::paint(BOLD, "flaky tests, which passed only after a retry:"));
+    page.heading(BOLD, "flaky tests, which passed only after a retry:");
     for test in tests {
         for retried in Retried::of(record, test) {
             let name = style::paint(style, &escape::line(&retried.name));
@@ -84,8 +84,7 @@ fn repeated(page: &mut ConsoleLines, record: &Record) {
     if tests.peek().is_none() {
         return;
     }
-    page.line("");
-    page.line(&style::paint(BOLD, "repeated tests:"));
+    page.heading(BOLD, "repeated tests:");
     for (test, repeated) in tests {
         let style = if repeated.passed == repeated.times.len() { GOOD } else { BAD };
         let name = escape::line(&record.full_name(test.plan.test)).into_owned();
@@ -110,8 +109,7 @@ fn grow(page: &mut ConsoleLines, title: &str, growing: Vec<Growing>) {
     if growing.is_empty() {
         return;
     }
-    page.line("");
-    page.line(&style::paint(BOLD, title));
+    page.heading(BOLD, title);
     for each in growing {
         let name = style::paint(LOUD, &escape::line(&each.name));
         if each.what.is_empty() {
@@ -129,8 +127,7 @@ fn killed(page: &mut ConsoleLines, record: &Record) {
     if left.is_empty() {
         return;
     }
-    page.line("");
-    page.line(&style::paint(BOLD, "processes that were left behind and had to be killed:"));
+    page.heading(BOLD, "processes that were left behind and had to be killed:");
     for process in left.iter().take(PROCESSES) {
         page.line(&format!("  {}", explain::process(process)));
     }

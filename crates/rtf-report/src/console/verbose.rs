@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use rtf_model::{
-    CaseFinished, CaseId, Event, EventKind, FixtureId, HookId, Output, Record, Source, TestId,
+    CaseFinished, CaseId, Event, EventKind, FixtureId, Output, Record, Source, Stream, TestId,
     Verdict,
 };
 
@@ -24,35 +24,7 @@ pub(super) struct Verbose {
 }
 
 /// The source of an output, and whether it is standard error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Key {
-    Test(TestId, bool),
-    Fixture(FixtureId, bool),
-    Hook(HookId, bool),
-}
-
-impl Key {
-    fn of(output: &Output) -> Self {
-        let is_error = output.stream == rtf_model::Stream::Stderr;
-        match output.source {
-            Source::Test(id) => Self::Test(id, is_error),
-            Source::Fixture(id) => Self::Fixture(id, is_error),
-            Source::Hook(id) => Self::Hook(id, is_error),
-        }
-    }
-
-    fn source(self) -> Source {
-        match self {
-            Self::Test(id, _) => Source::Test(id),
-            Self::Fixture(id, _) => Source::Fixture(id),
-            Self::Hook(id, _) => Source::Hook(id),
-        }
-    }
-
-    fn name(self, record: &Record) -> String {
-        name(record, self.source())
-    }
-}
+type Key = (Source, bool);
 
 impl Verbose {
     /// Shows the details of an event; `live` shows the rest.
@@ -129,7 +101,7 @@ impl Verbose {
             }
             EventKind::Output(output) => {
                 // The next piece would not continue this line.
-                self.partial.remove(&Key::of(output));
+                self.partial.remove(&key(output));
                 Some(lines(&output.text))
             }
             _ => None,
@@ -137,8 +109,7 @@ impl Verbose {
     }
 
     fn output(&mut self, page: &mut ConsoleLines, output: &Output, record: &Record) {
-        let key = Key::of(output);
-        let partial = self.partial.entry(key).or_default();
+        let partial = self.partial.entry(key(output)).or_default();
         if output.omitted_bytes > 0 {
             let bytes = words::count(output.omitted_bytes, "byte");
             partial.push_str(&format!("\n[… {bytes} left out …]\n"));
@@ -151,17 +122,17 @@ impl Verbose {
         };
         let rest = partial.split_off(complete);
         let text = std::mem::replace(partial, rest);
-        print(page, &key.name(record), &text);
+        print(page, &name(record, output.source), &text);
     }
 
     /// Shows the incomplete lines of a suite, except those of tests
     /// that are still running: the rest of these lines may follow.
     fn flush_suite(&mut self, page: &mut ConsoleLines, record: &Record, source: Source) {
         let suite = record.suite_of(source);
-        let goes_on = |key: &Key| matches!(key, Key::Test(..)) && key.source() != source;
+        let goes_on = |of: Source| matches!(of, Source::Test(_)) && of != source;
         let (now, later) = std::mem::take(&mut self.partial)
             .into_iter()
-            .partition(|(key, _)| record.suite_of(key.source()) == suite && !goes_on(key));
+            .partition(|((of, _), _)| record.suite_of(*of) == suite && !goes_on(*of));
         self.partial = now;
         self.flush(page, record);
         self.partial = later;
@@ -169,10 +140,14 @@ impl Verbose {
 
     /// Shows incomplete lines.
     pub fn flush(&mut self, page: &mut ConsoleLines, record: &Record) {
-        for (key, text) in std::mem::take(&mut self.partial) {
-            print(page, &key.name(record), &text);
+        for ((source, _), text) in std::mem::take(&mut self.partial) {
+            print(page, &name(record, source), &text);
         }
     }
+}
+
+fn key(output: &Output) -> Key {
+    (output.source, output.stream == Stream::Stderr)
 }
 
 fn name(record: &Record, source: Source) -> String {

@@ -11,24 +11,24 @@ use crate::{escape, explain, known_failure};
 const CASES: usize = 100;
 
 /// Whether a test has findings. A known failure has none.
-pub(super) fn is_problem(record: &Record, test: &TestRecord) -> bool {
+pub(crate) fn is_problem(record: &Record, test: &TestRecord) -> bool {
     let verdict = test.final_verdict();
     // The reason why the runner skipped it is a separate finding.
     let is_red = !verdict.is_green() && verdict != Verdict::Skipped;
     !known_failure::is_known(test) && (is_red || known_failure::red_reason(record, test).is_some())
 }
 
-pub(super) fn of(record: &Record, test: &TestRecord, roots: &Roots<'_>) -> Vec<Finding> {
+pub(crate) fn of_test(record: &Record, test: &TestRecord, roots: &Roots<'_>) -> Vec<Finding> {
     if !is_problem(record, test) {
         return Vec::new();
     }
     if let Some(reason) = known_failure::red_reason(record, test) {
         return vec![of_red(record, test, &reason, roots)];
     }
-    let Some(cases) = TestCases::of(test) else { return vec![of_test(record, test, roots)] };
+    let Some(cases) = TestCases::of(test) else { return vec![of_whole(record, test, roots)] };
     let mut findings = Vec::new();
     if cases.has_test_problem(test) {
-        findings.push(of_test(record, test, roots));
+        findings.push(of_whole(record, test, roots));
     }
     let failed = cases.results.iter().filter(|case| case.is_problem);
     let count = failed.clone().count();
@@ -40,15 +40,16 @@ pub(super) fn of(record: &Record, test: &TestRecord, roots: &Roots<'_>) -> Vec<F
     findings
 }
 
-fn of_test(record: &Record, test: &TestRecord, roots: &Roots<'_>) -> Finding {
+/// The test itself, without its cases.
+fn of_whole(record: &Record, test: &TestRecord, roots: &Roots<'_>) -> Finding {
     let verdict = test.final_verdict();
     let about = record.full_name(test.plan.test);
-    let mut lines = Vec::new();
-    if let Some(attempt) = test.decisive_attempt() {
-        let sink = &mut |_, line: &str| lines.push(line.to_owned());
-        explain::explain(attempt, EXTENT, sink);
-        explain::left(&attempt.leaked, sink);
-    }
+    let mut lines = explain::lines(|sink| {
+        if let Some(attempt) = test.decisive_attempt() {
+            explain::explain(attempt, EXTENT, sink);
+            explain::left(&attempt.leaked, sink);
+        }
+    });
     if lines.is_empty() {
         lines.push(escape::block(test.reason().unwrap_or(verdict.as_str())).into_owned());
     }
@@ -70,8 +71,7 @@ fn of_case(
 ) -> Finding {
     let verdict = case.verdict().unwrap_or(Verdict::Error);
     let about = format!("{}/{}", record.full_name(test.plan.test), case.path);
-    let mut lines = Vec::new();
-    explain::case(cases, case, EXTENT, &mut |_, line| lines.push(line.to_owned()));
+    let lines = explain::lines(|sink| explain::case(cases, case, EXTENT, sink));
     let place = cases.locations(case).find_map(|at| roots.place(&at.file, at.line));
     Finding {
         rank: rank(verdict),

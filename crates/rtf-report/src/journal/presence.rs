@@ -3,6 +3,8 @@
 
 use std::fs::{self, File, Metadata};
 use std::io;
+use std::os::fd::AsRawFd;
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
 /// The identity of the file since it was created.
@@ -16,19 +18,16 @@ pub(super) struct Presence {
     counts_links: bool,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Identity {
-    device: u64,
-    inode: u64,
-}
+/// The device and the inode.
+type Identity = (u64, u64);
 
 impl Presence {
     /// Of a file that was just created at `path`.
     pub fn of(file: &File, path: &Path) -> io::Result<Self> {
         let path = std::path::absolute(path)?;
         let (by_file, by_path) = (file.metadata()?, fs::metadata(&path)?);
-        let identity = identity(&by_file).filter(|found| Some(*found) == identity(&by_path));
-        Ok(Self { path, identity, counts_links: links(&by_file).is_some_and(|links| links > 0) })
+        let identity = Some(identity(&by_file)).filter(|found| *found == identity(&by_path));
+        Ok(Self { path, identity, counts_links: by_file.nlink() > 0 })
     }
 
     /// Checks that the file has a name, and `size` bytes.
@@ -37,7 +36,7 @@ impl Presence {
     /// What happened to it, in words.
     pub fn check_file(&self, file: &File, size: u64) -> io::Result<()> {
         let found = file.metadata()?;
-        if self.counts_links && links(&found) == Some(0) {
+        if self.counts_links && found.nlink() == 0 {
             return Err(io::Error::other("it was removed during the run"));
         }
         if found.len() != size {
@@ -54,7 +53,7 @@ impl Presence {
     /// What happened to it, in words.
     pub fn check_path(&self, file: &File) -> io::Result<()> {
         match fs::metadata(&self.path) {
-            Ok(found) if self.identity.is_none() || identity(&found) == self.identity => Ok(()),
+            Ok(found) if self.identity.is_none_or(|known| known == identity(&found)) => Ok(()),
             Ok(_) => Err(self.moved("it was replaced during the run", file)),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 Err(self.moved("it was moved during the run", file))
@@ -71,37 +70,12 @@ impl Presence {
     }
 }
 
-#[cfg(unix)]
-fn identity(found: &Metadata) -> Option<Identity> {
-    use std::os::unix::fs::MetadataExt;
-    Some(Identity { device: found.dev(), inode: found.ino() })
-}
-
-#[cfg(unix)]
-fn links(found: &Metadata) -> Option<u64> {
-    use std::os::unix::fs::MetadataExt;
-    Some(found.nlink())
-}
-
-#[cfg(not(unix))]
-fn identity(_found: &Metadata) -> Option<Identity> {
-    None
-}
-
-#[cfg(not(unix))]
-fn links(_found: &Metadata) -> Option<u64> {
-    None
+fn identity(found: &Metadata) -> Identity {
+    (found.dev(), found.ino())
 }
 
 /// Where an open file is now, as Linux knows it.
-#[cfg(target_os = "linux")]
 fn current_path(file: &File) -> Option<PathBuf> {
-    use std::os::fd::AsRawFd;
     let path = fs::read_link(format!("/proc/self/fd/{}", file.as_raw_fd())).ok()?;
     path.is_file().then_some(path)
-}
-
-#[cfg(not(target_os = "linux"))]
-fn current_path(_file: &File) -> Option<PathBuf> {
-    None
 }

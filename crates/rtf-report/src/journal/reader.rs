@@ -72,9 +72,10 @@ pub fn read_from(path: &Path, journal: impl BufRead) -> Result<Stored, JournalEr
 /// As for [`read`]; and the reporter's own.
 pub fn replay(path: &Path, reporter: &mut dyn Reporter) -> Result<Stored, JournalError> {
     let damages = find_damage(path)?;
-    let stored = Reading::new(path, |_, event, record| reporter.event(&event, record))
-        .with_damages(damages)
-        .all()?;
+    let mut reading = Reading::new(path, |_, event, record| reporter.event(&event, record));
+    reading.is_damage_known = !damages.is_empty();
+    reading.stored.record.damages = damages;
+    let stored = reading.all()?;
     reporter.finish(&stored.record)?;
     Ok(stored)
 }
@@ -104,7 +105,9 @@ pub fn read_events(
         visit(line, event);
         Ok(())
     };
-    Reading::new(path, visit).with_record(Record::lean()).all()
+    let mut reading = Reading::new(path, visit);
+    reading.stored.record = Record::lean();
+    reading.all()
 }
 
 /// Reads a journal and calls `visit` with each line that is an event, as it is
@@ -181,17 +184,6 @@ impl<'a, V: FnMut(&[u8], Event, &Record) -> Result<(), ReportError>> Reading<'a,
     fn new(path: &'a Path, visit: V) -> Self {
         let stored = Stored { record: Record::default(), torn: false };
         Self { path, visit, stored, lines: JournalLines::default(), is_damage_known: false }
-    }
-
-    fn with_record(mut self, record: Record) -> Self {
-        self.stored.record = record;
-        self
-    }
-
-    fn with_damages(mut self, damages: Vec<Damage>) -> Self {
-        self.is_damage_known = !damages.is_empty();
-        self.stored.record.damages = damages;
-        self
     }
 
     fn all(self) -> Result<Stored, JournalError> {

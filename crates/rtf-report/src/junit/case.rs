@@ -8,7 +8,7 @@ use rtf_model::{
     Attachment, CaseId, CaseRecord, Measurement, Record, Significance, TestRecord, Verdict,
 };
 
-use super::{test, text, time};
+use super::{described, first_line, test, text, time};
 use crate::cases::{CaseResult, CaseSource, TestCases, sources};
 use crate::explain::{self, Extent};
 use crate::{escape, known_failure, words};
@@ -104,7 +104,7 @@ fn status(
     let Some(verdict) = case.verdict() else {
         return not_run(test);
     };
-    let (mut status, message) = match verdict {
+    let (status, message) = match verdict {
         Verdict::Passed
             if record.flaky_fails() && case.record.is_some_and(CaseRecord::is_flaky) =>
         {
@@ -122,13 +122,11 @@ fn status(
         }
         verdict => (TestCaseStatus::non_success(test::kind(verdict)), case.reason().to_owned()),
     };
-    status.set_message(text(message.lines().next().unwrap_or_default()));
-    status.set_type(verdict.as_str());
-    let mut lines = Vec::new();
-    let sink = &mut |_, line: &str| lines.push(line.to_owned());
-    explain::case(cases, case, Extent::ALL, sink);
-    status.set_description(lines.join("\n"));
-    status
+    described(status, verdict.as_str(), first_line(&message), explained(cases, case))
+}
+
+fn explained(cases: &TestCases<'_>, case: &CaseResult<'_>) -> String {
+    explain::lines(|sink| explain::case(cases, case, Extent::ALL, sink)).join("\n")
 }
 
 /// Adds an earlier attempt of a case. One that passed is no rerun in JUnit.
@@ -144,11 +142,8 @@ fn rerun(
     rerun.timestamp = time::at(record, record_of_case.started);
     rerun.set_time(attempt.duration);
     rerun.set_type(verdict.as_str());
-    rerun.set_message(text(attempt.reason().lines().next().unwrap_or_default()));
-    let mut lines = Vec::new();
-    let sink = &mut |_, line: &str| lines.push(line.to_owned());
-    explain::case(cases, attempt, Extent::ALL, sink);
-    rerun.set_description(lines.join("\n"));
+    rerun.set_message(text(first_line(attempt.reason())));
+    rerun.set_description(explained(cases, attempt));
     status.add_rerun(rerun);
 }
 

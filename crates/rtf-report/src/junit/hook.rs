@@ -3,7 +3,7 @@
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus};
 use rtf_model::{HookRecord, HookRunRecord, Record};
 
-use super::{text, time};
+use super::{described, first_line, text, time};
 use crate::explain::{self, Extent};
 
 /// A case for each run of a hook. One that failed is an error: the robot may
@@ -39,13 +39,10 @@ fn case(record: &Record, hook: &HookRecord, (name, run): (String, &HookRunRecord
 
 fn status(run: &HookRunRecord) -> TestCaseStatus {
     let Some(problem) = run.problem() else { return TestCaseStatus::success() };
-    let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
-    status.set_message(text(problem.lines().next().unwrap_or_default()));
-    status.set_type("hook");
-    let mut lines = Vec::new();
-    let sink = &mut |_, line: &str| lines.push(line.to_owned());
-    explain::hook(run, Extent::ALL, sink);
-    explain::block(explain::Tone::Dim, &run.reason, "reason: ", sink);
-    status.set_description(lines.join("\n"));
-    status
+    let lines = explain::lines(|sink| {
+        explain::hook(run, Extent::ALL, sink);
+        explain::block(explain::Tone::Dim, &run.reason, "reason: ", sink);
+    });
+    let status = TestCaseStatus::non_success(NonSuccessKind::Error);
+    described(status, "hook", first_line(problem), lines.join("\n"))
 }

@@ -14,7 +14,7 @@ mod time;
 use std::io::{self, Write};
 use std::path::Path;
 
-use quick_junit::{Report, TestCase, TestSuite};
+use quick_junit::{Report, TestCase, TestCaseStatus, TestSuite};
 use rtf_model::{LeakedProcess, Record, SuiteRecord};
 
 use crate::growth::{self, Within};
@@ -95,6 +95,23 @@ fn properties(junit: &mut TestSuite, record: &Record, suite: &SuiteRecord) {
     }
 }
 
+/// A status with its type, message and description.
+fn described(
+    mut status: TestCaseStatus,
+    kind: &str,
+    message: &str,
+    description: String,
+) -> TestCaseStatus {
+    status.set_message(text(message));
+    status.set_type(kind);
+    status.set_description(description);
+    status
+}
+
+fn first_line(text: &str) -> &str {
+    text.lines().next().unwrap_or_default()
+}
+
 /// Text that XML can hold and that means no harm: control characters are
 /// written out, not dropped.
 fn text(text: &str) -> String {
@@ -108,8 +125,7 @@ fn leaked(case: &mut TestCase, left: &[LeakedProcess], passed: bool) {
         case.add_property(("leaked", explain::process(process).as_str()));
     }
     if passed && !left.is_empty() {
-        let mut lines = String::new();
-        explain::left(left, &mut |_, line| lines += &format!("{line}\n"));
-        case.set_system_err(lines);
+        let lines = explain::lines(|sink| explain::left(left, sink));
+        case.set_system_err(lines.join("\n") + "\n");
     }
 }

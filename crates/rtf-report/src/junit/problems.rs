@@ -3,8 +3,9 @@
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 use rtf_model::{FixtureRecord, Record, SuiteRecord};
 
-use super::text;
-use crate::{explain, finding};
+use super::{described, first_line, text};
+use crate::explain::{self, Tone};
+use crate::finding;
 
 /// The case of a fixture, when something went wrong with it.
 pub(super) fn of_fixture(
@@ -14,15 +15,14 @@ pub(super) fn of_fixture(
 ) -> Option<TestCase> {
     let problems = fixture.problems(suite.plan.tolerates_collapse);
     let first = problems.first()?;
-    let mut lines: Vec<_> = problems.iter().map(|problem| text(problem)).collect();
-    let sink = &mut |_, line: &str| lines.push(line.to_owned());
-    fixture.messages.iter().for_each(|message| explain::message(message, sink));
-    explain::left(&fixture.leaked, sink);
-    explain::printed(fixture.log_tail.iter().map(String::as_str), sink);
-    let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
-    status.set_message(text(first.lines().next().unwrap_or_default()));
-    status.set_type("fixture");
-    status.set_description(lines.join("\n"));
+    let lines = explain::lines(|sink| {
+        problems.iter().for_each(|problem| sink(Tone::Bad, &text(problem)));
+        fixture.messages.iter().for_each(|message| explain::message(message, sink));
+        explain::left(&fixture.leaked, sink);
+        explain::printed(fixture.log_tail.iter().map(String::as_str), sink);
+    });
+    let status = TestCaseStatus::non_success(NonSuccessKind::Error);
+    let status = described(status, "fixture", first_line(first), lines.join("\n"));
     let mut case = TestCase::new(text(&format!("fixture {}", fixture.plan.name)), status);
     case.set_classname(text(&suite.plan.name));
     case.timestamp = fixture.started.and_then(|at| super::time::at(record, at));

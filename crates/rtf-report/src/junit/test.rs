@@ -7,8 +7,8 @@ use rtf_model::{
     Attachment, AttemptRecord, Measurement, Record, Significance, TestRecord, Verdict,
 };
 
-use super::{text, time};
-use crate::explain::{self, Extent};
+use super::{described, first_line, text, time};
+use crate::explain::{self, Extent, Tone};
 use crate::{known_failure, words};
 
 /// More measurements, questions or series than this would drown the page that shows them.
@@ -60,7 +60,7 @@ fn status(record: &Record, test: &TestRecord) -> TestCaseStatus {
     if let Some(reason) = known_failure::red_reason(record, test) {
         return red(record, test, &reason);
     }
-    let mut status = match verdict {
+    let status = match verdict {
         Verdict::Passed => return passed(record, test),
         Verdict::Skipped => TestCaseStatus::skipped(),
         verdict => TestCaseStatus::non_success(kind(verdict)),
@@ -68,31 +68,24 @@ fn status(record: &Record, test: &TestRecord) -> TestCaseStatus {
     let unspoken = if test.attempts.is_empty() { NOT_BEGUN } else { CUT_SHORT };
     let reason = if test.verdict().is_some() { test.reason() } else { Some(unspoken) };
     let reason = reason.unwrap_or(verdict.as_str());
-    status.set_message(text(reason.lines().next().unwrap_or_default()));
-    status.set_type(verdict.as_str());
-    status.set_description(description(record, test, reason));
-    status
+    described(status, verdict.as_str(), first_line(reason), description(record, test, reason))
 }
 
 /// A known failure is skipped, as in pytest: no server has a word for it.
 fn known(record: &Record, test: &TestRecord) -> TestCaseStatus {
-    let mut status = TestCaseStatus::skipped();
-    status.set_message(text(&known_failure::describe(test)));
-    status.set_type(test.final_verdict().as_str());
-    status.set_description(description(record, test, test.reason().unwrap_or_default()));
-    status
+    let description = description(record, test, test.reason().unwrap_or_default());
+    let (kind, message) = (test.final_verdict().as_str(), known_failure::describe(test));
+    described(TestCaseStatus::skipped(), kind, &message, description)
 }
 
 /// A test that passed or skipped itself, and makes the run red.
 fn red(record: &Record, test: &TestRecord, reason: &str) -> TestCaseStatus {
-    let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-    status.set_message(text(reason));
-    status.set_type(match test.significance() {
+    let kind = match test.significance() {
         Significance::UnexpectedPass => "unexpected-pass",
         _ => Verdict::Skipped.as_str(),
-    });
-    status.set_description(description(record, test, reason));
-    status
+    };
+    let status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+    described(status, kind, reason, description(record, test, reason))
 }
 
 pub(super) fn kind(verdict: Verdict) -> NonSuccessKind {
@@ -165,26 +158,25 @@ fn title(test: &TestRecord, attempt: &AttemptRecord) -> String {
 }
 
 fn explained(attempt: &AttemptRecord) -> String {
-    let mut lines = Vec::new();
-    let sink = &mut |_, line: &str| lines.push(line.to_owned());
-    explain::explain(attempt, Extent::ALL, sink);
-    explain::left(&attempt.leaked, sink);
+    let lines = explain::lines(|sink| {
+        explain::explain(attempt, Extent::ALL, sink);
+        explain::left(&attempt.leaked, sink);
+    });
     lines.join("\n")
 }
 
 /// The last lines of the fixtures that are to blame.
 fn fixture_tails(record: &Record, test: &TestRecord) -> Vec<String> {
-    let mut lines = Vec::new();
     let suite = record.suites.get(test.plan.suite.index());
-    let ids = suite.map_or(&[][..], |suite| &suite.fixtures);
-    for fixture in ids.iter().filter_map(|id| record.fixture(*id)) {
-        if !fixture.log_tail.is_empty() {
-            lines.push(text(&format!("the last lines of fixture {}:", fixture.plan.name)));
-            let tail = fixture.log_tail.iter().map(String::as_str);
-            explain::printed(tail, &mut |_, line| lines.push(line.to_owned()));
+    let fixtures = suite.iter().flat_map(|suite| &suite.fixtures);
+    let fixtures = fixtures.filter_map(|id| record.fixture(*id));
+    explain::lines(|sink| {
+        for fixture in fixtures.filter(|fixture| !fixture.log_tail.is_empty()) {
+            let heading = format!("the last lines of fixture {}:", fixture.plan.name);
+            sink(Tone::Plain, &text(&heading));
+            explain::printed(fixture.log_tail.iter().map(String::as_str), sink);
         }
-    }
-    lines
+    })
 }
 
 fn properties(case: &mut TestCase, test: &TestRecord) {

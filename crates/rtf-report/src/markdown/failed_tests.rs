@@ -109,10 +109,10 @@ fn last_messages(page: &mut String, attempt: &AttemptRecord) {
     let is_reported = |kind| matches!(kind, MessageKind::Report | MessageKind::Check);
     let messages: Vec<_> =
         attempt.messages.iter().filter(|message| is_reported(message.kind)).collect();
-    let mut lines = Vec::new();
-    for message in &messages[messages.len().saturating_sub(LAST)..] {
-        explain::message(message, &mut |_, line| lines.push(line.to_owned()));
-    }
+    let last_ones = &messages[messages.len().saturating_sub(LAST)..];
+    let lines = explain::lines(|sink| {
+        last_ones.iter().for_each(|message| explain::message(message, sink));
+    });
     if lines.is_empty() {
         return;
     }

@@ -45,11 +45,11 @@ pub(super) fn hooks(page: &mut String, record: &Record, options: &MarkdownOption
 }
 
 fn explain_hook(page: &mut String, run: &HookRunRecord) {
-    let mut lines = Vec::new();
-    let sink = &mut |_: Tone, line: &str| lines.push(line.to_owned());
-    explain::hook(run, EXTENT, sink);
-    explain::block(Tone::Dim, &run.reason, "reason: ", sink);
-    explain::printed(words::tail(&run.output, EXTENT.stack_lines).0, sink);
+    let lines = explain::lines(|sink| {
+        explain::hook(run, EXTENT, sink);
+        explain::block(Tone::Dim, &run.reason, "reason: ", sink);
+        explain::printed(words::tail(&run.output, EXTENT.stack_lines).0, sink);
+    });
     block(page, lines.iter().map(String::as_str));
     *page += "\n";
 }

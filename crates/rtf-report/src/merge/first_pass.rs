@@ -59,7 +59,7 @@ impl FirstPass {
         let has_episodes =
             |suite: SuiteId| self.suites.get(suite.index()).is_some_and(|suite| suite.has_episodes);
         let (joined, others): (Vec<_>, Vec<_>) =
-            self.plans.duplicates().iter().partition(|it| it.timed && has_episodes(it.suite));
+            self.plans.duplicates.iter().partition(|it| it.timed && has_episodes(it.suite));
         let repeated: BTreeSet<_> =
             joined.iter().filter_map(|it| self.manifests.same_run(it.runs[1])).collect();
         let name = |run: usize| runs[run].name.clone();
@@ -158,7 +158,7 @@ impl<'a> PartReading<'a> {
         self.pass.plans.add(&kind);
         let attempt = self.attempts.follow(&kind);
         attempt.into_iter().for_each(|attempt| self.choose(&attempt));
-        let ids = Ids { plan: self.pass.plans.plan(), part: self.part };
+        let ids = Ids { plan: &self.pass.plans.plan, part: self.part };
         self.suite = ids.translate(&mut kind).or(self.suite);
         match (kind, self.suite) {
             (EventKind::RunStarted(run), _) => {
@@ -218,7 +218,7 @@ impl<'a> PartReading<'a> {
 
     /// Keeps the attachments of an attempt, or not.
     fn choose(&mut self, attempt: &AttachingAttempt) {
-        let plan = self.pass.plans.plan();
+        let plan = &self.pass.plans.plan;
         let test = &plan.tests[plan.maps[self.part].tests[attempt.id.test.index()].index()];
         let suite = &plan.suites[test.suite.index()].name;
         let episode = self.episodes.get(&test.suite);
@@ -240,7 +240,7 @@ impl<'a> PartReading<'a> {
         for attempt in std::mem::take(&mut self.attempts).unfinished() {
             self.choose(&attempt);
         }
-        let ids = Ids { plan: self.pass.plans.plan(), part: self.part };
+        let ids = Ids { plan: &self.pass.plans.plan, part: self.part };
         for suite in ids.suites().collect::<Vec<_>>() {
             let piece = self.pieces.remove(&suite).unwrap_or_else(|| Piece::of(self.part));
             self.merged_suite(suite).pieces.push(piece);

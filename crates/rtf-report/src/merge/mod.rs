@@ -109,7 +109,7 @@ impl Mergeable {
     pub fn write(self, header: Header, visit: Visit<'_>) -> Result<(), JournalError> {
         let Self { runs, pass } = self;
         let FirstPass { plans, manifests, suites, warnings, kept, ends } = pass;
-        let plan = plans.finish();
+        let plan = plans.plan.numbered();
         let mut out = Merging { visit, seq: 0, now: Micros::default() };
         out.push(EventKind::RunStarted(RunStarted {
             version: EVENTS_VERSION,

@@ -30,36 +30,29 @@ pub(super) struct Map {
     pub tests: Vec<TestId>,
 }
 
-/// In which order ids were given, and which they get when all are known: those
-/// of a suite follow each other.
-struct Renumbered(Vec<u32>);
-
-impl Renumbered {
-    fn sort<T>(list: &mut Vec<T>, suite: impl Fn(&T) -> SuiteId) -> Self {
-        let mut sorted: Vec<_> = std::mem::take(list).into_iter().enumerate().collect();
-        sorted.sort_by_key(|(_, entry)| suite(entry));
-        let mut new = vec![0; sorted.len()];
-        for (place, (old, entry)) in sorted.into_iter().enumerate() {
-            new[old] = count(place);
-            list.push(entry);
-        }
-        Self(new)
+/// Sorts entries by their suites, so that the ids of a suite follow each other. Returns the new
+/// ids by the old ones.
+fn sort_by_suite<T>(list: &mut Vec<T>, suite: impl Fn(&T) -> SuiteId) -> Vec<u32> {
+    let mut sorted: Vec<_> = std::mem::take(list).into_iter().enumerate().collect();
+    sorted.sort_by_key(|(_, entry)| suite(entry));
+    let mut new = vec![0; sorted.len()];
+    for (place, (old, entry)) in sorted.into_iter().enumerate() {
+        new[old] = count(place);
+        list.push(entry);
     }
-
-    fn of(&self, old: usize) -> u32 {
-        self.0[old]
-    }
+    new
 }
 
 impl MergedPlan {
-    fn numbered(mut self) -> Self {
-        let fixtures = Renumbered::sort(&mut self.fixtures, |fixture| fixture.suite);
-        let hooks = Renumbered::sort(&mut self.hooks, |hook| hook.suite);
-        let tests = Renumbered::sort(&mut self.tests, |test| test.suite);
+    /// The plan of all runs, with its last ids.
+    pub fn numbered(mut self) -> Self {
+        let fixtures = sort_by_suite(&mut self.fixtures, |fixture| fixture.suite);
+        let hooks = sort_by_suite(&mut self.hooks, |hook| hook.suite);
+        let tests = sort_by_suite(&mut self.tests, |test| test.suite);
         for map in &mut self.maps {
-            map.fixtures.iter_mut().for_each(|id| id.0 = fixtures.of(id.index()));
-            map.hooks.iter_mut().for_each(|id| id.0 = hooks.of(id.index()));
-            map.tests.iter_mut().for_each(|id| id.0 = tests.of(id.index()));
+            map.fixtures.iter_mut().for_each(|id| id.0 = fixtures[id.index()]);
+            map.hooks.iter_mut().for_each(|id| id.0 = hooks[id.index()]);
+            map.tests.iter_mut().for_each(|id| id.0 = tests[id.index()]);
         }
         (0..).zip(&mut self.fixtures).for_each(|(id, plan)| plan.fixture = FixtureId(id));
         (0..).zip(&mut self.hooks).for_each(|(id, plan)| plan.hook = HookId(id));
@@ -104,14 +97,15 @@ pub(super) struct Duplicate {
 /// Plans that are joined, one run after the other; the ids are not the last ones.
 #[derive(Debug, Default)]
 pub(super) struct JoinedPlans {
-    plan: MergedPlan,
+    /// The plan so far. Only the ids of suites are final.
+    pub plan: MergedPlan,
     /// The suites by their names and files.
     suites: HashMap<(String, String), SuiteId>,
     fixtures: HashMap<(SuiteId, String), FixtureId>,
     hooks: HashMap<(SuiteId, String), HookId>,
     /// With the run that has it first.
     tests: HashMap<(SuiteId, String), (usize, TestId)>,
-    duplicates: Vec<Duplicate>,
+    pub duplicates: Vec<Duplicate>,
 }
 
 impl JoinedPlans {
@@ -130,20 +124,6 @@ impl JoinedPlans {
             EventKind::TestPlanned(plan) => self.test(plan),
             _ => {}
         }
-    }
-
-    /// The plan so far. Only the ids of suites are final.
-    pub fn plan(&self) -> &MergedPlan {
-        &self.plan
-    }
-
-    pub fn duplicates(&self) -> &[Duplicate] {
-        &self.duplicates
-    }
-
-    /// The plan of all runs.
-    pub fn finish(self) -> MergedPlan {
-        self.plan.numbered()
     }
 
     fn map(&mut self) -> &mut Map {

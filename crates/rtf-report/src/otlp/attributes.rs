@@ -4,10 +4,11 @@
 use rtf_model::{
     FaultRecord, Measurement, Message, MessageKind, RunStarted, SignalSummary, Verdict,
 };
+use serde::Serialize;
 use serde_json::{Value, json};
 
 /// Attributes while they are collected.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Serialize)]
 pub struct Attributes(Vec<Value>);
 
 impl Attributes {
@@ -37,20 +38,15 @@ impl Attributes {
         self.0.push(json!({"key": key, "value": {"boolValue": value}}));
         self
     }
-
-    pub fn into_json(self) -> Value {
-        Value::Array(self.0)
-    }
 }
 
 /// The attributes of what produced the trace.
-pub fn of_resource(run: &RunStarted) -> Value {
+pub fn of_resource(run: &RunStarted) -> Attributes {
     let host = run.manifest.origin.as_ref().map_or("", |origin| origin.host.as_str());
     Attributes::default()
         .text("service.name", "rtf")
         .text("service.version", &run.rtf)
         .text("host.name", host)
-        .into_json()
 }
 
 /// The sources, machine and job of a run.
@@ -116,11 +112,11 @@ pub fn of_message(message: &Message) -> (&'static str, Attributes) {
         _ => "report",
     };
     let attributes = Attributes::default().text("rtf.text", &message.text);
-    match &message.location {
-        Some(at) => (
-            name,
-            attributes.text("code.file.path", &at.file).whole("code.line.number", at.line.into()),
-        ),
-        None => (name, attributes),
-    }
+    let attributes = match &message.location {
+        Some(at) => {
+            attributes.text("code.file.path", &at.file).whole("code.line.number", at.line.into())
+        }
+        None => attributes,
+    };
+    (name, attributes)
 }

@@ -27,7 +27,7 @@ pub fn of(record: &Record, run: &RunStarted) -> Vec<Value> {
     for suite in &record.suites {
         add_suite(&mut trace, record, suite, root);
     }
-    trace.into_spans()
+    trace.spans
 }
 
 fn add_suite(trace: &mut Trace, record: &Record, suite: &SuiteRecord, root: u64) {

@@ -5,6 +5,7 @@ use rtf_model::{Micros, RunStarted};
 use serde_json::{Value, json};
 
 use super::attributes::Attributes;
+use crate::fnv;
 
 /// More events of a span are counted: collectors and their stores limit the size of a span.
 const EVENTS: usize = 128;
@@ -38,7 +39,7 @@ pub struct Trace {
     id: String,
     /// When the run started, in nanoseconds since 1970.
     epoch: u64,
-    spans: Vec<Value>,
+    pub spans: Vec<Value>,
 }
 
 impl Trace {
@@ -56,10 +57,7 @@ impl Trace {
         let dropped = events.len().saturating_sub(EVENTS);
         events.truncate(EVENTS);
         events.sort_by_key(|(at, _, _)| *at);
-        let event = |(at, name, attributes): (Micros, &str, Attributes)| {
-            json!({"timeUnixNano": self.nanos(at), "name": name,
-                "attributes": attributes.into_json()})
-        };
+        let event = |(at, name, attributes): (Micros, &str, Attributes)| json!({"timeUnixNano": self.nanos(at), "name": name, "attributes": attributes});
         let events: Vec<_> = events.into_iter().map(event).collect();
         let mut json = json!({
             "traceId": self.id,
@@ -68,7 +66,7 @@ impl Trace {
             "kind": 1,
             "startTimeUnixNano": self.nanos(start),
             "endTimeUnixNano": self.nanos(end.max(start)),
-            "attributes": attributes.into_json(),
+            "attributes": attributes,
             "events": events,
             "droppedEventsCount": dropped,
             "status": status_json(status),
@@ -82,10 +80,6 @@ impl Trace {
 
     fn nanos(&self, at: Micros) -> String {
         self.epoch.saturating_add(at.0.saturating_mul(1000)).to_string()
-    }
-
-    pub fn into_spans(self) -> Vec<Value> {
-        self.spans
     }
 }
 
@@ -107,12 +101,9 @@ fn trace_id(run: &RunStarted) -> String {
     let origin = run.manifest.origin.as_ref().map_or("", |origin| origin.id.as_str());
     let digits: String = origin.chars().filter(char::is_ascii_hexdigit).collect();
     let is_valid = digits.len() == 32 && digits.bytes().any(|digit| digit != b'0');
-    if is_valid { digits.to_ascii_lowercase() } else { format!("{:032x}", hash(&run.run)) }
-}
-
-/// FNV-1a with 128 bits.
-fn hash(text: &str) -> u128 {
-    const BASIS: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
-    const PRIME: u128 = 0x0000_0000_0100_0000_0000_0000_0000_013b;
-    text.bytes().fold(BASIS, |hash, byte| (hash ^ u128::from(byte)).wrapping_mul(PRIME))
+    if is_valid {
+        digits.to_ascii_lowercase()
+    } else {
+        format!("{:032x}", fnv::hash(run.run.as_bytes()))
+    }
 }

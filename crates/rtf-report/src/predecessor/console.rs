@@ -1,7 +1,6 @@
 //! The console output during the run, and the counts at its end.
 
 use std::io::Write;
-use std::path::Path;
 
 use anstyle::{AnsiColor, Style};
 use rtf_model::{Event, EventKind, Output, Record};
@@ -9,11 +8,8 @@ use rtf_model::{Event, EventKind, Output, Record};
 use super::result_line::{ResultLine, Word};
 use super::{lines, summary};
 use crate::background_writer::BackgroundWriter;
-use crate::disconnect::UntilDisconnect;
+use crate::stdout_stream::LineStream;
 use crate::{ReportError, Reporter, escape};
-
-/// Lines are written at the latest when so many bytes wait.
-const PAGE: usize = 16 * 1024;
 
 /// How much is shown.
 #[derive(Clone, Copy, Debug, Default)]
@@ -29,12 +25,11 @@ pub struct ResultListOptions {
 /// Shows lines as they come.
 pub struct ResultList {
     options: ResultListOptions,
-    out: UntilDisconnect,
-    /// The writer behind `out`, if it writes in the background.
+    stream: LineStream,
+    /// The writer behind `stream`, if it writes in the background.
     background: Option<BackgroundWriter>,
     /// Number of omitted lines that are not reported yet.
     left_out: usize,
-    page: String,
     /// Whether a plug-in printed half of a line.
     within_line: bool,
 }
@@ -55,8 +50,8 @@ impl ResultList {
     /// Writes to `out`, with colour codes.
     #[must_use]
     pub fn new(out: Box<dyn Write + Send>, options: ResultListOptions) -> Self {
-        let (out, page) = (UntilDisconnect::new(out), String::new());
-        Self { options, out, background: None, left_out: 0, page, within_line: false }
+        let stream = LineStream::new("what happens", out);
+        Self { options, stream, background: None, left_out: 0, within_line: false }
     }
 
     /// Whether detail is left out now, because too much waits to be written.
@@ -74,7 +69,8 @@ impl ResultList {
         let lines = std::mem::take(&mut self.left_out);
         if lines > 0 {
             self.end_line();
-            self.page += &format!("[… {lines} lines left out: standard output is too slow …]\n");
+            self.stream
+                .push(&format!("[… {lines} lines left out: standard output is too slow …]\n"));
         }
     }
 
@@ -86,12 +82,12 @@ impl ResultList {
         self.end_line();
         let style = style(line.word);
         if line.word == Word::Progress {
-            self.page += &format!("{style}{}{style:#}\n", line.text);
+            self.stream.push(&format!("{style}{}{style:#}\n", line.text));
         } else {
-            self.page += &format!("{style}{}{style:#}{}\n", line.word.as_str(), line.text);
+            self.stream.push(&format!("{style}{}{style:#}{}\n", line.word.as_str(), line.text));
         }
         if let Some(place) = line.place.as_ref().filter(|_| self.options.detail) {
-            self.page += &format!("{place}\n\n");
+            self.stream.push(&format!("{place}\n\n"));
         }
     }
 
@@ -106,25 +102,16 @@ impl ResultList {
         }
         if output.omitted_bytes > 0 {
             self.end_line();
-            self.page += &format!("[… {} bytes left out …]\n", output.omitted_bytes);
+            self.stream.push(&format!("[… {} bytes left out …]\n", output.omitted_bytes));
         }
-        self.page += &escape::block(&output.text);
+        self.stream.push(&escape::block(&output.text));
         self.within_line = !output.text.is_empty() && !output.text.ends_with('\n');
     }
 
     fn end_line(&mut self) {
         if std::mem::take(&mut self.within_line) {
-            self.page.push('\n');
+            self.stream.push("\n");
         }
-    }
-
-    fn flush(&mut self) -> Result<(), ReportError> {
-        if self.page.is_empty() {
-            return Ok(());
-        }
-        let written = self.out.write_all(self.page.as_bytes());
-        self.page.clear();
-        written.map_err(failed)
     }
 }
 
@@ -141,11 +128,11 @@ impl Reporter for ResultList {
         if matches!(event.kind, EventKind::RunFinished { .. }) {
             self.progress("Ending test runner.");
         }
-        if self.page.len() > PAGE { self.flush() } else { Ok(()) }
+        self.stream.flush_if_long()
     }
 
     fn idle(&mut self, _record: &Record) -> Result<(), ReportError> {
-        self.flush()
+        self.stream.flush()
     }
 
     fn finish(&mut self, record: &Record) -> Result<(), ReportError> {
@@ -155,11 +142,9 @@ impl Reporter for ResultList {
         self.report_left_out();
         self.end_line();
         if self.options.summary {
-            self.page += &summary::of(record, "results");
+            self.stream.push(&summary::of(record, "results"));
         }
-        self.flush()?;
-        let written = self.out.flush();
-        written.map_err(failed)
+        self.stream.finish()
     }
 }
 
@@ -171,8 +156,4 @@ fn style(word: Word) -> Style {
         Word::Fail | Word::Error => AnsiColor::BrightRed,
     };
     color.on_default()
-}
-
-fn failed(error: std::io::Error) -> ReportError {
-    ReportError::at("what happens", Path::new("standard output"))(error)
 }

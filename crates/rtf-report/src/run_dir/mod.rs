@@ -5,6 +5,7 @@ mod resolve;
 
 use std::fs;
 use std::io;
+use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
@@ -122,7 +123,7 @@ pub fn link(dir: &RunDir, link: &Path) -> Result<(), RunDirError> {
     let mut beside = link.as_os_str().to_owned();
     beside.push(format!("-{}", dir.name));
     let beside = PathBuf::from(beside);
-    symlink_dir(&target, &beside).and_then(|()| fs::rename(&beside, link)).map_err(failed)
+    symlink(&target, &beside).and_then(|()| fs::rename(&beside, link)).map_err(failed)
 }
 
 /// Names sort by time: the last four digits are the fraction of the second, in
@@ -137,7 +138,7 @@ fn name(now: &Zoned) -> String {
 fn point_latest(results: &Path, name: &str) -> Result<(), RunDirError> {
     let link = results.join(LATEST);
     let beside = results.join(format!(".{LATEST}-{name}"));
-    let replaced = match symlink_dir(name, &beside) {
+    let replaced = match symlink(name, &beside) {
         // File systems of USB sticks and some shares have no links; `latest`
         // is then found by the names, which sort by time.
         Err(error) if cannot_link(&error) => return Ok(()),
@@ -152,16 +153,6 @@ fn point_latest(results: &Path, name: &str) -> Result<(), RunDirError> {
 
 fn cannot_link(error: &io::Error) -> bool {
     matches!(error.kind(), io::ErrorKind::Unsupported | io::ErrorKind::PermissionDenied)
-}
-
-#[cfg(unix)]
-fn symlink_dir(target: impl AsRef<Path>, link: &Path) -> io::Result<()> {
-    std::os::unix::fs::symlink(target, link)
-}
-
-#[cfg(windows)]
-fn symlink_dir(target: impl AsRef<Path>, link: &Path) -> io::Result<()> {
-    std::os::windows::fs::symlink_dir(target, link)
 }
 
 #[cfg(test)]

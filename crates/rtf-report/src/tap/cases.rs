@@ -3,10 +3,10 @@
 
 use rtf_model::{Record, TestRecord, Verdict};
 
-use super::syntax::{SUBTEST, description};
+use super::syntax::{SUBTEST, description, severity};
 use super::yaml::Yaml;
 use crate::cases::{CaseResult, TestCases};
-use crate::explain::{self, Extent};
+use crate::explain::{self, Extent, Sink};
 use crate::{known_failure, words};
 
 /// Cases that are nested more deeply are written at this depth, with their paths.
@@ -114,16 +114,12 @@ impl Subtests<'_> {
         let Some(verdict) = case.verdict() else { return };
         let mut yaml = Yaml::new(text, level * SUBTEST);
         yaml.duration(case.duration);
-        yaml.text("verdict", verdict.as_str());
-        yaml.text("severity", if verdict == Verdict::Failed { "fail" } else { "error" });
-        yaml.text("message", case.reason());
+        yaml.problem(verdict, severity(verdict), case.reason());
         if let Some(location) = self.cases.locations(case).next() {
             yaml.place(&location.file, location.line);
         }
-        let mut lines = Vec::new();
-        let sink = &mut |_, line: &str| lines.push(line.to_owned());
-        explain::case(self.cases, case, Extent::ALL, sink);
-        yaml.lines("details", lines);
+        let explained = |sink: Sink<'_>| explain::case(self.cases, case, Extent::ALL, sink);
+        yaml.lines("details", explain::lines(explained));
         yaml.end();
     }
 }

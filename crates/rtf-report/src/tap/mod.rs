@@ -42,7 +42,7 @@ impl TapStream {
     fn go_on(&mut self, record: &Record, over: bool) {
         let mut text = String::new();
         self.walk.go_on(&mut text, record, over);
-        self.stream.page.extend_from_slice(text.as_bytes());
+        self.stream.push(&text);
     }
 }
 

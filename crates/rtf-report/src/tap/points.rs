@@ -3,7 +3,7 @@
 use rtf_model::{Location, Record, Significance, SuiteRecord, TestRecord, Verdict};
 
 use super::cases;
-use super::syntax::{SUBTEST, description};
+use super::syntax::{SUBTEST, description, severity};
 use super::yaml::Yaml;
 use crate::cases::TestCases;
 use crate::explain::{self, Extent};
@@ -44,9 +44,7 @@ pub(super) fn test(text: &mut String, number: usize, record: &Record, test: &Tes
     let mut yaml = Yaml::new(text, SUBTEST);
     yaml.duration(test.duration());
     if let Some(reason) = &red_reason {
-        yaml.text("verdict", verdict.as_str());
-        yaml.text("severity", "fail");
-        yaml.text("message", reason);
+        yaml.problem(verdict, "fail", reason);
     } else if !verdict.is_green() {
         explained(&mut yaml, test, verdict);
     }
@@ -64,12 +62,9 @@ pub(super) fn test(text: &mut String, number: usize, record: &Record, test: &Tes
 
 fn explained(yaml: &mut Yaml<'_>, test: &TestRecord, verdict: Verdict) {
     let unspoken = "the run ended before the test did";
-    yaml.text("verdict", verdict.as_str());
-    yaml.text("severity", if verdict == Verdict::Failed { "fail" } else { "error" });
-    yaml.text(
-        "message",
-        if test.verdict().is_some() { test.reason().unwrap_or_default() } else { unspoken },
-    );
+    let is_over = test.verdict().is_some();
+    let reason = if is_over { test.reason().unwrap_or_default() } else { unspoken };
+    yaml.problem(verdict, severity(verdict), reason);
     let Some(attempt) = test.decisive_attempt() else { return };
     let failures = explain::own_failures(attempt).chain(attempt.failures());
     let mut locations = failures.filter_map(|failure| failure.location.as_ref());
@@ -79,9 +74,10 @@ fn explained(yaml: &mut Yaml<'_>, test: &TestRecord, verdict: Verdict) {
     if test.plan.is_repeated() {
         yaml.number("repetition", f64::from(attempt.repetition));
     }
-    let mut lines = Vec::new();
-    explain::explain(attempt, Extent::ALL, &mut |_, line| lines.push(line.to_owned()));
-    explain::left(&attempt.leaked, &mut |_, line| lines.push(line.to_owned()));
+    let lines = explain::lines(|sink| {
+        explain::explain(attempt, Extent::ALL, sink);
+        explain::left(&attempt.leaked, sink);
+    });
     yaml.lines("details", lines);
     let (tail, total) = words::tail(&attempt.output, OUTPUT_LINES);
     let cut = (total > OUTPUT_LINES).then(|| format!("… the last {OUTPUT_LINES} of {total} lines"));

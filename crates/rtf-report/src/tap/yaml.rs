@@ -4,6 +4,8 @@
 
 use std::time::Duration;
 
+use rtf_model::Verdict;
+
 use crate::escape;
 
 /// A block of diagnostics, begun with its first entry.
@@ -43,6 +45,13 @@ impl<'a> Yaml<'a> {
         if !value.is_empty() {
             self.line(&format!("{key}: {}", quoted(value)));
         }
+    }
+
+    /// Why a point is not ok.
+    pub fn problem(&mut self, verdict: Verdict, severity: &str, message: &str) {
+        self.text("verdict", verdict.as_str());
+        self.text("severity", severity);
+        self.text("message", message);
     }
 
     /// A file and a line, as harnesses look for them.

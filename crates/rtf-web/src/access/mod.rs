@@ -56,9 +56,7 @@ pub struct Access {
     session: Secret,
     cookie: String,
     hosts: Hosts,
-    /// Whether reading needs the token, too.
-    remote: bool,
-    tls: bool,
+    rules: Rules,
     guesses: Guesses,
     log: AccessLog,
 }
@@ -95,13 +93,6 @@ pub struct WrongToken {
     pub count: u64,
 }
 
-impl WrongToken {
-    /// Whether it is worth a line: the first one, and then ever fewer.
-    fn is_reported(self) -> bool {
-        self.count.is_power_of_two()
-    }
-}
-
 impl Access {
     /// The rules of a server.
     ///
@@ -114,14 +105,12 @@ impl Access {
         log: AccessLog,
     ) -> Result<Self, TokenError> {
         let (cookie, session) = (format!("rtf-{}", hosts.port()), Secret::random()?);
-        let Rules { remote, tls } = rules;
-        let guesses = Guesses::default();
-        Ok(Self { token, session, cookie, hosts, remote, tls, guesses, log })
+        Ok(Self { token, session, cookie, hosts, rules, guesses: Guesses::default(), log })
     }
 
     #[must_use]
     pub fn token_to_read(&self) -> bool {
-        self.remote
+        self.rules.remote
     }
 
     /// Whether this is the token. After a wrong one, the client waits and the log has a line.
@@ -129,9 +118,9 @@ impl Access {
         let Err(count) = self.guesses.attempt(client, || self.token.is(guess)).await else {
             return true;
         };
-        let wrong = WrongToken { client, count };
-        if wrong.is_reported() {
-            self.log.report(wrong);
+        // The first one is worth a line, and then ever fewer.
+        if count.is_power_of_two() {
+            self.log.report(WrongToken { client, count });
         }
         false
     }
@@ -169,7 +158,7 @@ impl Access {
     }
 
     fn cookie(&self, value: &str, more: &str) -> HeaderValue {
-        let secure = if self.tls { "; Secure" } else { "" };
+        let secure = if self.rules.tls { "; Secure" } else { "" };
         let cookie =
             format!("{}={value}; HttpOnly; SameSite=Strict; Path=/{secure}{more}", self.cookie);
         HeaderValue::from_str(&cookie).unwrap_or(HeaderValue::from_static("rtf="))
@@ -186,7 +175,7 @@ impl Access {
             self.check_change(request, &host, who)?;
         }
         let is_open = path == API || is_session(path) || !is_data(path);
-        if self.remote && who == Who::Nobody && !is_open {
+        if self.rules.remote && who == Who::Nobody && !is_open {
             return Err(unauthorised("reading from beyond this machine needs the token"));
         }
         Ok(())
@@ -199,7 +188,7 @@ impl Access {
             Problem::new(StatusCode::FORBIDDEN, detail)
         };
         match headers.get(header::ORIGIN) {
-            Some(origin) if !host_header::is_origin_of(origin, host, self.tls) => {
+            Some(origin) if !host_header::is_origin_of(origin, host, self.rules.tls) => {
                 return Err(foreign());
             }
             Some(_) => {}

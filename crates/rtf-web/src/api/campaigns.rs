@@ -2,10 +2,9 @@
 
 use axum::extract::State;
 
-use super::details::JsonResult;
 use super::problems::Problems;
 use super::query::At;
-use crate::app::{App, JsonText, blocking};
+use crate::app::{App, JsonResult, JsonText, blocking};
 use crate::campaign_report::CampaignReport;
 use crate::problem::Problem;
 

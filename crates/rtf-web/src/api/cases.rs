@@ -1,15 +1,15 @@
 //! The cases of one attempt of a test.
 
 use axum::extract::State;
-use rtf_model::{AttemptCases, CaseRecord, Verdict};
+use rtf_model::{AttemptCases, CaseRecord};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-use super::details::{JsonResult, Path3};
+use super::details::Path3;
 use super::plan::entry;
 use super::problems::Problems;
-use super::query::{At, QueryParams, limit, words};
-use crate::app::App;
+use super::query::{At, QueryParams, limit, verdicts};
+use crate::app::{App, JsonResult};
 use crate::problem::Problem;
 use crate::views::{Case, Cases};
 
@@ -36,12 +36,10 @@ pub struct CaseQuery {
 impl CaseQuery {
     fn page(&self, cases: &AttemptCases) -> Result<Cases, Problem> {
         let limit = limit(self.limit, PAGE)?;
-        let known = Verdict::ALL.map(|verdict| verdict.as_str());
-        let verdicts = self.verdict.as_ref().map(|list| words("verdict", list, &known));
-        let verdicts = verdicts.transpose()?;
+        let verdicts = verdicts(self.verdict.as_deref())?;
         let has_verdict = |case: &&CaseRecord| {
-            let verdict = case.verdict().map(Verdict::as_str);
-            verdicts.as_ref().is_none_or(|list| list.iter().any(|known| Some(&**known) == verdict))
+            let verdict = case.verdict();
+            verdicts.as_ref().is_none_or(|list| verdict.is_some_and(|it| list.contains(&it)))
         };
         let after = self.after.unwrap_or(0);
         let start = cases.kept().partition_point(|case| case.start.case.0 <= after);
@@ -66,7 +64,7 @@ pub async fn cases(
     QueryParams(query): QueryParams<CaseQuery>,
 ) -> JsonResult {
     app.read(run, move |_, index| {
-        let record = entry(&index.record().tests, test, "test")?;
+        let record = entry(&index.record.tests, test, "test")?;
         let attempt = usize::try_from(number).ok().and_then(|number| number.checked_sub(1));
         let attempt = attempt.and_then(|index| record.attempts.get(index));
         let missing = || Problem::not_found(format!("there is no attempt {number} of test {test}"));

@@ -106,7 +106,7 @@ pub async fn stop_test(
     At((run, test)): At<(String, u32)>,
 ) -> ControlResult {
     act(app, run, move |control, index| {
-        if !entry(&index.record().tests, test, "test")?.is_running() {
+        if !entry(&index.record.tests, test, "test")?.is_running() {
             return Err(Problem::conflict(format!("test {test} does not run")));
         }
         control.stop_test(TestId(test));
@@ -124,7 +124,7 @@ pub async fn skip_suite(
     At((run, suite)): At<(String, u32)>,
 ) -> ControlResult {
     act(app, run, move |control, index| {
-        if entry(&index.record().suites, suite, "suite")?.finished.is_some() {
+        if entry(&index.record.suites, suite, "suite")?.finished.is_some() {
             return Err(Problem::conflict(format!("suite {suite} is over")));
         }
         control.skip_suite(SuiteId(suite));
@@ -158,7 +158,7 @@ fn start(run: &Run, runs: &Runs, starter: &dyn RunStarter) -> ControlResult {
         if !index.state().is_over() {
             return Err(Problem::conflict("the run goes on"));
         }
-        let started = index.record().run.as_ref();
+        let started = index.record.run.as_ref();
         let started = started.ok_or_else(|| Problem::conflict("its journal has no beginning"))?;
         started.working_dir.clone()
     };

@@ -1,19 +1,21 @@
 //! The messages, measurements and output of one attempt of a test, start of a fixture
 //! or run of a hook. They are read from the journal, page by page.
 
+use std::ops::ControlFlow;
+
 use axum::extract::State;
-use rtf_model::{Event, EventKind, FixtureId, HookId, Source, TestId};
+use rtf_model::{Event, EventKind, FixtureId, HookId, MessageKind, Source, TestId};
 use rtf_report::journal::{EventHeader, parse_event};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
 use super::problems::Problems;
-use super::query::{At, Number, PageQuery, QueryParams, words};
+use super::query::{At, Number, PageQuery, QueryParams, values};
 use crate::address;
-use crate::app::{App, JsonText};
+use crate::app::{App, JsonResult, JsonText};
 use crate::index::LineReader;
 use crate::problem::Problem;
-use crate::runs::Run;
+use crate::runs::{Run, unreadable};
 use crate::views::{
     Attached, Attachments, Measured, Measurements, Messages, OutputPage, Printed, Said, Stack,
     Stacks,
@@ -23,7 +25,6 @@ use crate::views::{
 const PAGE_BYTES: usize = 1 << 20;
 
 pub(super) type Path3 = At<(String, u32, u32)>;
-pub(super) type JsonResult = Result<JsonText, Problem>;
 
 /// Which part of the journal, and which page of it.
 pub(super) struct DetailQuery {
@@ -49,48 +50,55 @@ impl DetailQuery {
         mut pick: impl FnMut(Event) -> Option<T>,
     ) -> Result<(Vec<T>, Option<u64>), Problem> {
         let limit = self.page.limit()?;
-        let mut lines = self.lines(run)?;
-        let (mut entries, mut bytes, mut last) = (Vec::new(), 0, 0);
-        let failed = crate::runs::unreadable;
-        while let Some(line) = lines.next().map_err(failed)? {
-            let Ok(header) = serde_json::from_slice::<EventHeader>(line.text) else { continue };
-            let wanted = self.page.after.is_none_or(|Number(after)| header.seq > after);
-            if !wanted || *header.kind != *self.kind || header.detail_source() != Some(self.source)
-            {
-                continue;
-            }
-            let Some(entry) = parse_event(line.text).ok().and_then(&mut pick) else {
-                continue;
-            };
+        let (mut entries, mut bytes, mut last, mut next) = (Vec::new(), 0, 0, None);
+        self.each(run, |event, length| {
+            let seq = event.seq;
+            let Some(entry) = pick(event) else { return ControlFlow::Continue(()) };
             if entries.len() >= limit || bytes >= PAGE_BYTES {
-                return Ok((entries, Some(last)));
+                next = Some(last);
+                return ControlFlow::Break(());
             }
             entries.push(entry);
-            bytes += line.text.len();
-            last = header.seq;
-        }
-        Ok((entries, None))
+            bytes += length;
+            last = seq;
+            ControlFlow::Continue(())
+        })?;
+        Ok((entries, next))
     }
 
-    /// Visits the entries of all pages.
-    pub(super) fn each(&self, run: &Run, mut take: impl FnMut(Event)) -> Result<(), Problem> {
+    /// Visits the entries of all pages from this one on, each with its length, until `visit`
+    /// breaks.
+    pub(super) fn each(
+        &self,
+        run: &Run,
+        mut visit: impl FnMut(Event, usize) -> ControlFlow<()>,
+    ) -> Result<(), Problem> {
         let mut lines = self.lines(run)?;
-        let failed = crate::runs::unreadable;
-        while let Some(line) = lines.next().map_err(failed)? {
+        while let Some(line) = lines.next().map_err(unreadable)? {
             let Ok(header) = serde_json::from_slice::<EventHeader>(line.text) else { continue };
-            let is_detail =
-                *header.kind == *self.kind && header.detail_source() == Some(self.source);
-            let is_question = self.kind == QUESTION && header.questioner() == Some(self.source);
-            if is_detail || is_question {
-                parse_event(line.text).into_iter().for_each(&mut take);
+            let is_before = self.page.after.is_some_and(|Number(after)| header.seq <= after);
+            if !is_before
+                && self.wants(&header)
+                && let Ok(event) = parse_event(line.text)
+                && visit(event, line.text.len()).is_break()
+            {
+                break;
             }
         }
         Ok(())
     }
 
+    fn wants(&self, header: &EventHeader) -> bool {
+        let source = match self.kind {
+            QUESTION => header.questioner(),
+            kind => header.detail_source().filter(|_| *header.kind == *kind),
+        };
+        source == Some(self.source)
+    }
+
     fn lines(&self, run: &Run) -> Result<LineReader, Problem> {
         let index = run.read()?;
-        let Some(place) = index.positions().of(self.source, self.number) else {
+        let Some(place) = index.positions.of(self.source, self.number) else {
             let (what, id) = match self.source {
                 Source::Test(id) => ("attempt", format!("test {id}")),
                 Source::Fixture(id) => ("start", format!("fixture {id}")),
@@ -99,12 +107,11 @@ impl DetailQuery {
             let number = self.number;
             return Err(Problem::not_found(format!("there is no {what} {number} of {id}")));
         };
-        let known = self.page.after.map_or(0, |Number(after)| index.positions().before(after));
-        let end = place.end.unwrap_or(index.offset());
+        let known = self.page.after.map_or(0, |Number(after)| index.positions.before(after));
+        let end = place.end.unwrap_or(index.offset);
         let start = place.start.max(known);
         drop(index);
-        let lines = LineReader::between(run.journal()?, start, end);
-        lines.map_err(crate::runs::unreadable)
+        LineReader::between(run.journal()?, start, end).map_err(unreadable)
     }
 }
 
@@ -124,7 +131,12 @@ pub struct Kinds {
 }
 
 /// The kinds of messages.
-const KINDS: [&str; 4] = ["report", "check", "failure", "error"];
+const KINDS: [(&str, MessageKind); 4] = [
+    ("report", MessageKind::Report),
+    ("check", MessageKind::Check),
+    ("failure", MessageKind::Failure),
+    ("error", MessageKind::Error),
+];
 
 async fn messages(
     app: App,
@@ -134,14 +146,12 @@ async fn messages(
 ) -> JsonResult {
     let page = PageQuery { after: kinds.after, limit: kinds.limit };
     let part = DetailQuery { source, number, kind: "message", page };
-    let wanted = kinds.kind.map(|list| words("kind", &list, &KINDS)).transpose()?;
+    let wanted = kinds.kind.map(|list| values("kind", &list, &KINDS)).transpose()?;
     app.with_run(run, move |run| {
         let (messages, next) = part.read(run, |event| {
             let EventKind::Message { message, .. } = event.kind else { return None };
-            let kind = serde_json::to_value(message.kind).ok()?;
-            let named = |list: &Vec<String>| list.iter().any(|name| Some(&**name) == kind.as_str());
-            let said = Said { seq: event.seq, at: event.at.0, message };
-            wanted.as_ref().is_none_or(named).then_some(said)
+            let is_wanted = wanted.as_ref().is_none_or(|list| list.contains(&message.kind));
+            is_wanted.then_some(Said { seq: event.seq, at: event.at.0, message })
         })?;
         JsonText::of(&Messages { messages, next })
     })

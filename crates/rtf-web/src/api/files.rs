@@ -32,31 +32,27 @@ pub async fn file(
     let place = app.place_for_file()?;
     let opened = app.with_run(run, move |run| {
         let file = open(run, &path)?;
-        let said = run.read()?.attached().of(&path).cloned();
+        let said = run.read()?.attached.of(&path).cloned();
         Ok((file, ServedType::of(&path, said.as_ref())))
     });
     let ((file, length), kind) = opened.await?;
-    let mut response = match range(&headers, length) {
-        RangeRequest::All => stream_file::body(file, 0..length, place)?.into_response(),
-        RangeRequest::Part(start, end) => {
-            let mut part = stream_file::body(file, start..end, place)?.into_response();
-            *part.status_mut() = StatusCode::PARTIAL_CONTENT;
-            let text = format!("bytes {start}-{}/{length}", end - 1);
-            insert(part.headers_mut(), header::CONTENT_RANGE, &text);
-            insert(part.headers_mut(), header::CONTENT_LENGTH, &(end - start).to_string());
-            part
-        }
+    let (range, status) = match range(&headers, length) {
+        RangeRequest::All => (0..length, StatusCode::OK),
+        RangeRequest::Part(start, end) => (start..end, StatusCode::PARTIAL_CONTENT),
         RangeRequest::Nothing => {
             let mut none = StatusCode::RANGE_NOT_SATISFIABLE.into_response();
             insert(none.headers_mut(), header::CONTENT_RANGE, &format!("bytes */{length}"));
             return Ok(none);
         }
     };
-    let whole = response.status() == StatusCode::OK;
+    let body = stream_file::body(file, range.clone(), place)?;
+    let mut response = (status, body).into_response();
     let headers = response.headers_mut();
-    if whole {
-        insert(headers, header::CONTENT_LENGTH, &length.to_string());
+    if status == StatusCode::PARTIAL_CONTENT {
+        let text = format!("bytes {}-{}/{length}", range.start, range.end - 1);
+        insert(headers, header::CONTENT_RANGE, &text);
     }
+    insert(headers, header::CONTENT_LENGTH, &(range.end - range.start).to_string());
     kind.describe(headers);
     Ok(response)
 }
@@ -78,7 +74,7 @@ fn open(run: &Run, path: &str) -> Result<(File, u64), Problem> {
 pub async fn journal(State(app): State<App>, At(run): At<String>) -> Result<Response, Problem> {
     let place = app.place_for_file()?;
     let opened = app.with_run(run, |run| {
-        let length = run.read()?.offset();
+        let length = run.read()?.offset;
         Ok((run.journal()?, length, run.name.clone()))
     });
     let (file, length, name) = opened.await?;

@@ -93,7 +93,7 @@ pub async fn log(
     let place = app.place_for_file();
     app.with_run(run, move |run| {
         let place = place?;
-        let path = path(run.read()?.record(), kind, id, number);
+        let path = path(&run.read()?.record, kind, id, number);
         let none = || Problem::not_found("there is no such log: nothing was printed");
         let file = path.and_then(|path| run.open_file(&path).ok()).ok_or_else(none)?;
         let size = file.metadata().map_err(|_| none())?.len();

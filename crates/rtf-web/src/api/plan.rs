@@ -4,11 +4,9 @@ use axum::extract::State;
 
 use super::problems::Problems;
 use super::query::At;
-use crate::app::{App, JsonText};
+use crate::app::{App, JsonResult};
 use crate::problem::Problem;
 use crate::views::{Fixture, Fixtures, Hook, Hooks, Suite, Suites};
-
-type JsonResult = Result<JsonText, Problem>;
 
 /// The entry of a list with this id.
 pub fn entry<'a, T>(list: &'a [T], id: u32, what: &str) -> Result<&'a T, Problem> {
@@ -22,7 +20,7 @@ pub fn entry<'a, T>(list: &'a [T], id: u32, what: &str) -> Result<&'a T, Problem
     responses((status = 200, body = Suites), Problems))]
 pub async fn suites(State(app): State<App>, At(run): At<String>) -> JsonResult {
     app.read(run, |_, index| {
-        let (record, over) = (index.record(), index.state().is_over());
+        let (record, over) = (&index.record, index.state().is_over());
         let suites = record.suites.iter().map(|suite| Suite::of(suite, record, over));
         Ok(Suites { suites: suites.collect() })
     })
@@ -35,7 +33,7 @@ pub async fn suites(State(app): State<App>, At(run): At<String>) -> JsonResult {
     responses((status = 200, body = Suite), Problems))]
 pub async fn suite(State(app): State<App>, At((run, suite)): At<(String, u32)>) -> JsonResult {
     app.read(run, move |_, index| {
-        let (record, over) = (index.record(), index.state().is_over());
+        let (record, over) = (&index.record, index.state().is_over());
         Ok(Suite::of(entry(&record.suites, suite, "suite")?, record, over))
     })
     .await
@@ -46,7 +44,7 @@ pub async fn suite(State(app): State<App>, At((run, suite)): At<(String, u32)>) 
     responses((status = 200, body = Fixtures), Problems))]
 pub async fn fixtures(State(app): State<App>, At(run): At<String>) -> JsonResult {
     app.read(run, |_, index| {
-        Ok(Fixtures { fixtures: index.record().fixtures.iter().map(Fixture::of).collect() })
+        Ok(Fixtures { fixtures: index.record.fixtures.iter().map(Fixture::of).collect() })
     })
     .await
 }
@@ -56,7 +54,7 @@ pub async fn fixtures(State(app): State<App>, At(run): At<String>) -> JsonResult
     params(("run" = String, Path), ("fixture" = u32, Path)),
     responses((status = 200, body = Fixture), Problems))]
 pub async fn fixture(State(app): State<App>, At((run, id)): At<(String, u32)>) -> JsonResult {
-    app.read(run, move |_, index| Ok(Fixture::of(entry(&index.record().fixtures, id, "fixture")?)))
+    app.read(run, move |_, index| Ok(Fixture::of(entry(&index.record.fixtures, id, "fixture")?)))
         .await
 }
 
@@ -64,10 +62,8 @@ pub async fn fixture(State(app): State<App>, At((run, id)): At<(String, u32)>) -
 #[utoipa::path(get, path = "/runs/{run}/hooks", tag = "plan", params(("run" = String, Path)),
     responses((status = 200, body = Hooks), Problems))]
 pub async fn hooks(State(app): State<App>, At(run): At<String>) -> JsonResult {
-    app.read(run, |_, index| {
-        Ok(Hooks { hooks: index.record().hooks.iter().map(Hook::of).collect() })
-    })
-    .await
+    app.read(run, |_, index| Ok(Hooks { hooks: index.record.hooks.iter().map(Hook::of).collect() }))
+        .await
 }
 
 /// One hook.
@@ -75,5 +71,5 @@ pub async fn hooks(State(app): State<App>, At(run): At<String>) -> JsonResult {
     params(("run" = String, Path), ("hook" = u32, Path)),
     responses((status = 200, body = Hook), Problems))]
 pub async fn hook(State(app): State<App>, At((run, id)): At<(String, u32)>) -> JsonResult {
-    app.read(run, move |_, index| Ok(Hook::of(entry(&index.record().hooks, id, "hook")?))).await
+    app.read(run, move |_, index| Ok(Hook::of(entry(&index.record.hooks, id, "hook")?))).await
 }

@@ -2,6 +2,7 @@
 
 use axum::extract::{FromRequestParts, Path, Query};
 use axum::http::request::Parts;
+use rtf_model::Verdict;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use utoipa::IntoParams;
@@ -53,20 +54,29 @@ impl TryFrom<u64> for Number {
     }
 }
 
-/// The words of a list that is separated by commas.
+/// The values of a list of words that are separated by commas.
 ///
 /// # Errors
-/// One of them is not known.
-pub fn words(name: &str, list: &str, known: &[&str]) -> Result<Vec<String>, Problem> {
-    let word = |word: &str| match known.contains(&word) {
-        true => Ok(word.to_owned()),
-        false => {
-            let known: Vec<_> = known.iter().map(|known| format!("`{known}`")).collect();
+/// One of the words is not known.
+pub fn values<T: Copy>(name: &str, list: &str, known: &[(&str, T)]) -> Result<Vec<T>, Problem> {
+    let value = |word: &str| {
+        let found = known.iter().find(|(known, _)| *known == word);
+        found.map(|(_, value)| *value).ok_or_else(|| {
+            let known: Vec<_> = known.iter().map(|(known, _)| format!("`{known}`")).collect();
             let known = known.join(", ");
-            Err(Problem::bad_request(format!("`{name}` has `{word}`, expected some of {known}")))
-        }
+            Problem::bad_request(format!("`{name}` has `{word}`, expected some of {known}"))
+        })
     };
-    list.split(',').map(word).collect()
+    list.split(',').map(value).collect()
+}
+
+/// The verdicts that were asked for.
+///
+/// # Errors
+/// As for [`values`].
+pub fn verdicts(list: Option<&str>) -> Result<Option<Vec<Verdict>>, Problem> {
+    let known = Verdict::ALL.map(|verdict| (verdict.as_str(), verdict));
+    list.map(|list| values("verdict", list, &known)).transpose()
 }
 
 /// A page of a list.

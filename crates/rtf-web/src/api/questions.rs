@@ -1,5 +1,7 @@
 //! The questions of an attempt, and the answers of an operator or a program.
 
+use std::ops::ControlFlow;
+
 use axum::Json;
 use axum::extract::rejection::JsonRejection;
 use axum::extract::{ConnectInfo, Extension, State};
@@ -8,14 +10,14 @@ use serde::Deserialize;
 use utoipa::ToSchema;
 
 use super::control::{Accepted, ControlResult, act};
-use super::details::{DetailQuery, JsonResult, Path3};
+use super::details::{DetailQuery, Path3};
 use super::plan::entry;
 use super::problems::{ChangeProblems, Problems};
 use super::query::At;
 use super::session::rejected;
 use crate::access::Who;
 use crate::address;
-use crate::app::{App, JsonText};
+use crate::app::{App, JsonResult, JsonText};
 use crate::capabilities::AnswerRequest;
 use crate::connections::Peer;
 use crate::index::Index;
@@ -30,8 +32,9 @@ pub async fn questions(State(app): State<App>, At((run, test, number)): Path3) -
     app.with_run(run, move |run| {
         let source = Source::Test(TestId(test));
         let mut questions = Questions::default();
-        DetailQuery::questions_of(source, number).each(run, |event| {
+        DetailQuery::questions_of(source, number).each(run, |event, _| {
             questions.take(event, |path| Some(address::file(&run.name, path)));
+            ControlFlow::Continue(())
         })?;
         JsonText::of(&questions)
     })
@@ -71,7 +74,7 @@ pub async fn answer(
 
 /// Whether the question waits for this answer.
 fn check(index: &Index, (test, question): (u32, u32), answer: &str) -> Result<(), Problem> {
-    let attempts = &entry(&index.record().tests, test, "test")?.attempts;
+    let attempts = &entry(&index.record.tests, test, "test")?.attempts;
     let questions = attempts.last().map_or(&[][..], |attempt| &attempt.questions);
     let open = questions.iter().find(|it| it.is_open() && it.asked.question == question);
     let open = open.ok_or_else(|| {

@@ -1,15 +1,17 @@
 //! The signals that one attempt of a test sampled: in numbers, and as curves that
 //! are drawn. The samples themselves are in the journal.
 
+use std::ops::ControlFlow;
+
 use axum::extract::State;
 use rtf_model::{EventKind, Samples, Source, TestId};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-use super::details::{DetailQuery, JsonResult, Path3};
+use super::details::{DetailQuery, Path3};
 use super::problems::Problems;
 use super::query::{At, PageQuery, QueryParams};
-use crate::app::{App, JsonText};
+use crate::app::{App, JsonResult, JsonText};
 use crate::problem::Problem;
 use crate::views::{SignalList, Signals};
 
@@ -55,9 +57,11 @@ pub async fn series(
     let part = DetailQuery { source: Source::Test(TestId(test)), number, kind: "sampled", page };
     app.with_run(run, move |run| {
         let mut all = SignalList::default();
-        part.each(run, |event| {
-            let EventKind::Sampled { samples, .. } = event.kind else { return };
-            all.add_samples(samples, |samples| window.of(samples));
+        part.each(run, |event, _| {
+            if let EventKind::Sampled { samples, .. } = event.kind {
+                all.add_samples(samples, |samples| window.of(samples));
+            }
+            ControlFlow::Continue(())
         })?;
         let series = all.into_signals();
         JsonText::of(&Signals { series })

@@ -12,7 +12,7 @@ use utoipa::ToSchema;
 
 use super::problems::{ChangeProblems, Problems};
 use crate::access::Who;
-use crate::app::{App, JsonText, blocking};
+use crate::app::{App, JsonResult, JsonText, blocking};
 use crate::connections::Peer;
 use crate::problem::Problem;
 
@@ -48,10 +48,7 @@ pub struct Server {
 
 /// What this server is.
 #[utoipa::path(get, path = "", tag = "server", responses((status = 200, body = Server), Problems))]
-pub async fn server(
-    State(app): State<App>,
-    Extension(who): Extension<Who>,
-) -> Result<JsonText, Problem> {
+pub async fn server(State(app): State<App>, Extension(who): Extension<Who>) -> JsonResult {
     let authorised = who != Who::Nobody;
     let token_to_read = app.access.token_to_read();
     blocking(move || {

@@ -7,8 +7,8 @@ use utoipa::IntoParams;
 
 use super::plan::entry;
 use super::problems::Problems;
-use super::query::{At, QueryParams, limit, words};
-use crate::app::{App, JsonText};
+use super::query::{At, QueryParams, limit, verdicts};
+use crate::app::{App, JsonResult};
 use crate::problem::Problem;
 use crate::views::{Test, TestDetail, TestPage, TestState};
 
@@ -46,11 +46,11 @@ pub struct Which {
 }
 
 impl Which {
-    fn matches(&self, (test, found): &(Test, &TestRecord), verdicts: Option<&[String]>) -> bool {
-        let verdict = test.verdict.map(|verdict| verdict.as_str());
+    fn matches(&self, (test, found): &(Test, &TestRecord), verdicts: Option<&[Verdict]>) -> bool {
+        let verdict = test.verdict;
         self.suite.is_none_or(|suite| suite == test.suite)
             && self.state.is_none_or(|state| state == test.state)
-            && verdicts.is_none_or(|list| list.iter().any(|wanted| Some(&**wanted) == verdict))
+            && verdicts.is_none_or(|list| verdict.is_some_and(|it| list.contains(&it)))
             && self.tag.as_ref().is_none_or(|tag| test.tags.contains(tag))
             && self.case.as_ref().is_none_or(|case| has_case(found, case))
     }
@@ -64,9 +64,7 @@ impl Which {
 
     fn page(&self, record: &Record, over: bool) -> Result<TestPage, Problem> {
         let limit = limit(self.limit, PAGE)?;
-        let known = Verdict::ALL.map(|verdict| verdict.as_str());
-        let verdicts = self.verdict.as_ref().map(|list| words("verdict", list, &known));
-        let verdicts = verdicts.transpose()?;
+        let verdicts = verdicts(self.verdict.as_deref())?;
         let matches = |test: &(Test, &TestRecord)| {
             self.matches(test, verdicts.as_deref()) && self.has_name(&test.0, record)
         };
@@ -103,21 +101,18 @@ pub async fn list(
     State(app): State<App>,
     At(run): At<String>,
     QueryParams(which): QueryParams<Which>,
-) -> Result<JsonText, Problem> {
-    app.read(run, move |_, index| which.page(index.record(), index.state().is_over())).await
+) -> JsonResult {
+    app.read(run, move |_, index| which.page(&index.record, index.state().is_over())).await
 }
 
 /// One test with its attempts.
 #[utoipa::path(get, path = "/runs/{run}/tests/{test}", tag = "tests",
     params(("run" = String, Path), ("test" = u32, Path)),
     responses((status = 200, body = TestDetail), Problems))]
-pub async fn test(
-    State(app): State<App>,
-    At((run, test)): At<(String, u32)>,
-) -> Result<JsonText, Problem> {
+pub async fn test(State(app): State<App>, At((run, test)): At<(String, u32)>) -> JsonResult {
     let commands = app.commands;
     app.read(run, move |run, index| {
-        let record = index.record();
+        let record = &index.record;
         let test = entry(&record.tests, test, "test")?;
         let commands = commands();
         let command = (commands.rerun)(record, test.plan.test, None);

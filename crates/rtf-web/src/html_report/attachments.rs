@@ -107,10 +107,7 @@ fn copy(file: &mut File, path: &Path) -> io::Result<()> {
 }
 
 fn data_url(attachment: &Attachment, content: &[u8]) -> String {
-    let info = AttachmentInfo {
-        name: attachment.name.as_str().into(),
-        media_type: attachment.media_type.as_str().into(),
-    };
+    let info = AttachmentInfo::of(attachment);
     let media_type = ServedType::of(&attachment.path, Some(&info)).content_type();
     format!("data:{media_type};base64,{}", STANDARD.encode(content))
 }

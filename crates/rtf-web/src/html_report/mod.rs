@@ -87,11 +87,11 @@ fn fill(template: &Template, out: &mut dyn Write, source: &ReportSource<'_>) -> 
     let journal = File::open(source.journal)?;
     let mut index = Index::ended(journal.try_clone()?);
     index.advance()?;
-    let record = index.record();
+    let record = &index.record;
     out.write_all(template.head.as_bytes())?;
     let mut chunks = Chunks::new(out);
     let files = AttachmentFiles::new(source.journal, source.output);
-    Collector::new(record, files, &mut chunks).read(journal, index.offset())?;
+    Collector::new(record, files, &mut chunks).read(journal, index.offset)?;
     for test in &record.tests {
         let id = test.plan.test;
         let command = (source.commands.rerun)(record, id, None);

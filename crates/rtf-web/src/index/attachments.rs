@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use rtf_model::{Event, EventKind, Record, TestId, TestRecord};
+use rtf_model::{Attachment, Event, EventKind, Record, TestId, TestRecord};
 use rtf_report::console::is_recording;
 
 /// Names and media types of attachments, by their paths in the run's directory, and which of them
@@ -24,6 +24,13 @@ pub struct AttachmentInfo {
     pub media_type: Box<str>,
 }
 
+impl AttachmentInfo {
+    pub fn of(attachment: &Attachment) -> Self {
+        let Attachment { name, media_type, .. } = attachment;
+        Self { name: name.as_str().into(), media_type: media_type.as_str().into() }
+    }
+}
+
 impl AttachmentIndex {
     /// Adds the attachment of an event, which the record contains.
     pub(super) fn take(&mut self, event: &Event, record: &Record) {
@@ -33,11 +40,7 @@ impl AttachmentIndex {
             let key = (*test, attempt.repetition, attempt.attempt);
             self.recordings.entry(key).or_insert_with(|| attachment.path.as_str().into());
         }
-        let description = AttachmentInfo {
-            name: attachment.name.as_str().into(),
-            media_type: attachment.media_type.as_str().into(),
-        };
-        self.files.insert(attachment.path.as_str().into(), description);
+        self.files.insert(attachment.path.as_str().into(), AttachmentInfo::of(attachment));
     }
 
     /// The recording of the attempt that decided about a test.

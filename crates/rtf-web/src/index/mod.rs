@@ -13,7 +13,7 @@ use std::io;
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
-use rtf_model::{Damage, Record, RunState, TestRecord};
+use rtf_model::{Record, RunState, TestRecord};
 use rtf_report::console::ReplayCommand;
 use rtf_report::journal::{self, JournalLines};
 
@@ -26,7 +26,7 @@ pub use positions::Positions;
 const APPENDING: Duration = Duration::from_secs(1);
 
 /// The state of a run in the API.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, utoipa::ToSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, utoipa::ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum State {
     /// The runner is still running.
@@ -40,6 +40,7 @@ pub enum State {
     /// The journal has no end, and no process writes it.
     Incomplete,
     /// Its journal is long and still being read; ask again.
+    #[default]
     Unread,
 }
 
@@ -55,12 +56,15 @@ impl State {
 #[derive(Debug)]
 pub struct Index {
     file: File,
-    record: Record,
-    positions: Positions,
+    /// Without messages and output.
+    pub record: Record,
+    /// The positions of events in the journal.
+    pub positions: Positions,
     lines: JournalLines,
-    attached: AttachmentIndex,
-    /// Complete lines were read up to here.
-    offset: u64,
+    /// Names and media types of attachments.
+    pub attached: AttachmentIndex,
+    /// The number of bytes read: all complete lines.
+    pub offset: u64,
     /// When the journal was last modified, once it has been read to its end.
     modified: Option<SystemTime>,
     /// Whether a run without an end is shown as one that continues.
@@ -151,24 +155,6 @@ impl Index {
         }
     }
 
-    /// The record, without messages and output.
-    #[must_use]
-    pub fn record(&self) -> &Record {
-        &self.record
-    }
-
-    /// The positions of events in the journal.
-    #[must_use]
-    pub fn positions(&self) -> &Positions {
-        &self.positions
-    }
-
-    /// Names and media types of attachments.
-    #[must_use]
-    pub fn attached(&self) -> &AttachmentIndex {
-        &self.attached
-    }
-
     /// The command that replays the recording of a test that is not green; `dir` is the run's
     /// directory. The record has no attachments.
     pub(crate) fn replay_command(
@@ -180,18 +166,6 @@ impl Index {
         let recording = self.attached.recording(test)?;
         let is_red = !self.record.is_test_green(test);
         is_red.then(|| replay(&self.record, test.plan.test, &dir.join(recording))).flatten()
-    }
-
-    /// The damage of the journal.
-    #[must_use]
-    pub fn damages(&self) -> &[Damage] {
-        &self.record.damages
-    }
-
-    /// Number of bytes read: all complete lines.
-    #[must_use]
-    pub fn offset(&self) -> u64 {
-        self.offset
     }
 
     /// The expected number of the next event.
@@ -241,10 +215,10 @@ mod tests {
         let now = SystemTime::now();
         rewrite(&path, now + Duration::from_secs(60));
         index.advance().unwrap();
-        assert_eq!(index.record().last_at, Micros(0), "the new time may be that of an append");
+        assert_eq!(index.record.last_at, Micros(0), "the new time may be that of an append");
         rewrite(&path, now - Duration::from_secs(60));
         index.advance().unwrap();
-        assert_eq!(index.record().last_at, Micros(1), "an append does not take a minute");
+        assert_eq!(index.record.last_at, Micros(1), "an append does not take a minute");
     }
 
     #[test]
@@ -256,6 +230,6 @@ mod tests {
         index.advance().unwrap();
         rewrite(&path, SystemTime::now() + Duration::from_secs(60));
         index.advance().unwrap();
-        assert_eq!(index.record().last_at, Micros(1));
+        assert_eq!(index.record.last_at, Micros(1));
     }
 }

@@ -1,6 +1,8 @@
 //! The positions of attempts, and of events by number, in a
 //! journal.
 
+use std::collections::HashMap;
+
 use rtf_model::{Event, EventKind, Source};
 
 /// The position of every n-th event is kept.
@@ -18,9 +20,8 @@ pub struct JournalRange {
 /// The positions of a run's events in its journal.
 #[derive(Debug, Default)]
 pub struct Positions {
-    tests: Vec<Vec<JournalRange>>,
-    fixtures: Vec<Vec<JournalRange>>,
-    hooks: Vec<Vec<JournalRange>>,
+    /// The attempts, starts or runs of each source.
+    ranges: HashMap<Source, Vec<JournalRange>>,
     /// Numbers of events and offsets of their lines, both ascending.
     marks: Vec<(u64, u64)>,
 }
@@ -40,22 +41,10 @@ impl Positions {
             EventKind::HookFinished { hook, .. } => (Source::Hook(*hook), false),
             _ => return,
         };
-        let (list, index) = match source {
-            Source::Test(id) => (&mut self.tests, id.index()),
-            Source::Fixture(id) => (&mut self.fixtures, id.index()),
-            Source::Hook(id) => (&mut self.hooks, id.index()),
-        };
-        if begins && list.len() <= index {
-            // A damaged number must not allocate much memory.
-            if index - list.len() > 1_000_000 {
-                return;
-            }
-            list.resize_with(index + 1, Vec::new);
-        }
-        let Some(places) = list.get_mut(index) else { return };
-        match places.last_mut() {
-            _ if begins => places.push(JournalRange { start, end: None }),
-            Some(place) => place.end = Some(end),
+        let ranges = self.ranges.entry(source).or_default();
+        match ranges.last_mut() {
+            _ if begins => ranges.push(JournalRange { start, end: None }),
+            Some(range) => range.end = Some(end),
             None => {}
         }
     }
@@ -63,26 +52,26 @@ impl Positions {
     /// The attempt, start or run of a source with this number, from 1.
     #[must_use]
     pub fn of(&self, source: Source, number: u32) -> Option<JournalRange> {
-        let (list, index) = match source {
-            Source::Test(id) => (&self.tests, id.index()),
-            Source::Fixture(id) => (&self.fixtures, id.index()),
-            Source::Hook(id) => (&self.hooks, id.index()),
-        };
         let place = usize::try_from(number.checked_sub(1)?).ok()?;
-        list.get(index)?.get(place).copied()
+        self.ranges.get(&source)?.get(place).copied()
     }
 
     /// A line's start at or before the event with this number.
     #[must_use]
     pub fn before(&self, seq: u64) -> u64 {
-        let after = self.marks.partition_point(|(known, _)| *known <= seq);
-        after.checked_sub(1).and_then(|index| self.marks.get(index)).map_or(0, |(_, start)| *start)
+        self.last_mark(|(known, _)| *known <= seq)
     }
 
     /// A line's start near this offset, before it.
     #[must_use]
     pub fn at(&self, offset: u64) -> u64 {
-        let after = self.marks.partition_point(|(_, start)| *start <= offset);
-        after.checked_sub(1).and_then(|index| self.marks.get(index)).map_or(0, |(_, start)| *start)
+        self.last_mark(|(_, start)| *start <= offset)
+    }
+
+    /// The start of the line of the last mark that meets a condition, which all marks before it
+    /// meet.
+    fn last_mark(&self, condition: impl FnMut(&(u64, u64)) -> bool) -> u64 {
+        let after = self.marks.partition_point(condition);
+        after.checked_sub(1).map_or(0, |index| self.marks[index].1)
     }
 }

@@ -8,21 +8,10 @@ use std::time::{Duration, Instant, SystemTime};
 
 use super::{Run, RunFilter, Runs};
 use crate::problem::Problem;
-use crate::views::RunInfo;
+use crate::views::{RunInfo, RunList};
 
 /// How long a response may be delayed by reading journals for the first time.
 const BUDGET: Duration = Duration::from_millis(500);
-
-/// A page of the list.
-#[derive(Debug, Default)]
-pub struct Listing {
-    /// The runs, the newest first.
-    pub runs: Vec<RunInfo>,
-    /// The last name of this page, if there are more runs.
-    pub next: Option<String>,
-    /// Number of runs that are left out because their journals are still being read.
-    pub unread: usize,
-}
 
 /// The cached summaries of runs that have ended.
 #[derive(Debug, Default)]
@@ -65,23 +54,22 @@ impl Runs {
         before: Option<&str>,
         limit: usize,
         filter: &RunFilter,
-    ) -> Listing {
+    ) -> RunList {
         let mut names = self.names();
         self.listed.retain(&names);
         names.retain(|name| before.is_none_or(|before| name.as_str() < before));
         let until = Instant::now() + BUDGET;
-        let (mut listing, mut unread) = (Listing::default(), Vec::new());
+        let (mut listing, mut unread) = (RunList::default(), Vec::new());
         for name in names {
             if listing.runs.len() >= limit {
                 listing.next = listing.runs.last().map(|run| run.run.clone());
                 break;
             }
-            match self.listed.get(&name, self.stamp(&name)) {
-                Some(info) => listing.runs.extend(Some(info).filter(|run| filter.matches(run))),
+            let info = match self.listed.get(&name, self.stamp(&name)) {
+                Some(info) => info,
                 None if Instant::now() < until => {
                     let info = self.info(&name);
-                    let info = info.unwrap_or_else(|problem| RunInfo::unreadable(&name, &problem));
-                    listing.runs.extend(Some(info).filter(|run| filter.matches(run)));
+                    info.unwrap_or_else(|problem| RunInfo::unreadable(&name, &problem))
                 }
                 None => {
                     if filter.is_empty() {
@@ -90,8 +78,10 @@ impl Runs {
                         listing.unread += 1;
                     }
                     unread.push(name);
+                    continue;
                 }
-            }
+            };
+            listing.runs.extend(Some(info).filter(|run| filter.matches(run)));
         }
         self.read_in_background(unread);
         listing

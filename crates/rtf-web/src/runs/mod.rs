@@ -12,8 +12,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use rtf_report::journal;
 use rtf_report::run_dir::{JOURNAL, LATEST};
 
-pub use filter::{RunFilter, RunResult};
-pub use list::Listing;
+pub use filter::RunFilter;
 
 use crate::index::Index;
 use crate::problem::Problem;
@@ -245,7 +244,7 @@ mod tests {
             let runs = Runs::new(results.path(), own);
             runs.read_ahead();
             let open = runs.open.lock().unwrap();
-            let read = open.iter().filter(|run| run.index.lock().unwrap().offset() > 0);
+            let read = open.iter().filter(|run| run.index.lock().unwrap().offset > 0);
             assert_eq!(read.map(|run| run.name.as_str()).collect::<Vec<_>>(), expected);
         }
     }

@@ -42,7 +42,7 @@ pub struct Case {
     #[schema(required = false)]
     pub carried: bool,
     /// How often its framework ran it before, in this attempt of the test.
-    #[serde(skip_serializing_if = "is_none")]
+    #[serde(skip_serializing_if = "super::is_default")]
     #[schema(required = false)]
     pub earlier_attempts: u32,
     /// Whether a later attempt of it, or of a case around it, decides.
@@ -67,7 +67,7 @@ pub struct Cases {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next: Option<u32>,
     /// Number of passed cases that are counted, but not listed; the journal has them.
-    #[serde(skip_serializing_if = "is_zero")]
+    #[serde(skip_serializing_if = "super::is_default")]
     #[schema(required = false)]
     pub omitted: u64,
     /// On the last page, the first announced cases that have not started; up to `limit`.
@@ -95,16 +95,6 @@ impl Cases {
     pub fn is_empty(&self) -> bool {
         self.cases.is_empty() && self.not_run.is_empty() && self.omitted == 0
     }
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde requires a reference")]
-fn is_zero(number: &u64) -> bool {
-    *number == 0
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde requires a reference")]
-fn is_none(number: &u32) -> bool {
-    *number == 0
 }
 
 /// Number of cases of an attempt.

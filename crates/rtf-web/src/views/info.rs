@@ -12,7 +12,7 @@ use crate::index::{Index, State};
 use crate::problem::Problem;
 
 /// A run as a whole.
-#[derive(Clone, Debug, Serialize, ToSchema)]
+#[derive(Clone, Debug, Default, Serialize, ToSchema)]
 pub struct RunInfo {
     /// Its name.
     pub run: String,
@@ -110,13 +110,8 @@ impl From<&rtf_model::TestTotals> for Totals {
     }
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
-fn is_zero(number: &usize) -> bool {
-    *number == 0
-}
-
 /// A page of the list of runs.
-#[derive(Debug, Serialize, ToSchema)]
+#[derive(Debug, Default, Serialize, ToSchema)]
 pub struct RunList {
     /// The runs, the newest first.
     pub runs: Vec<RunInfo>,
@@ -125,7 +120,7 @@ pub struct RunList {
     pub next: Option<String>,
     /// Number of runs that are still being read and may match;
     /// poll for them.
-    #[serde(skip_serializing_if = "is_zero")]
+    #[serde(skip_serializing_if = "super::is_default")]
     #[schema(required = false)]
     pub unread: usize,
 }
@@ -134,7 +129,7 @@ impl RunInfo {
     /// The description of a run.
     #[must_use]
     pub fn of(name: &str, index: &Index) -> Self {
-        let record = index.record();
+        let record = &index.record;
         let state = index.state();
         let suites = record.suites.iter();
         let totals = if state.is_over() { record.final_totals() } else { record.totals() };
@@ -153,51 +148,36 @@ impl RunInfo {
             green: state.is_over().then(|| record.is_green()),
             seq: index.next_seq(),
             last_at: record.last_at.0,
-            bytes: index.offset(),
+            bytes: index.offset,
             totals: Totals::from(&totals),
-            problems: suites.flat_map(|suite| record.suite_problems(suite.plan.suite)).collect(),
-            damages: index.damages().iter().map(DamageAt::from).collect(),
-            ..Self::empty(name, state, record)
+            problems: suites
+                .clone()
+                .flat_map(|suite| record.suite_problems(suite.plan.suite))
+                .collect(),
+            damages: record.damages.iter().map(DamageAt::from).collect(),
+            suites: record.suites.len(),
+            suite_names: suites.take(NAMES).map(|suite| suite.plan.name.clone()).collect(),
+            run: name.to_owned(),
+            state,
         }
     }
 
-    fn empty(name: &str, state: State, record: &Record) -> Self {
-        let names = record.suites.iter();
-        Self {
-            run: name.to_owned(),
-            started_at: String::new(),
-            rtf: String::new(),
-            command: Vec::new(),
-            working_dir: String::new(),
-            state,
-            interrupted: None,
-            died: None,
-            green: None,
-            seq: 0,
-            last_at: 0,
-            suites: record.suites.len(),
-            suite_names: names.take(NAMES).map(|suite| suite.plan.name.clone()).collect(),
-            revision: None,
-            profile: None,
-            robots: Vec::new(),
-            bytes: 0,
-            totals: Totals::from(&rtf_model::TestTotals::default()),
-            problems: Vec::new(),
-            damages: Vec::new(),
-        }
+    fn empty(name: &str, state: State) -> Self {
+        let totals = Totals::from(&rtf_model::TestTotals::default());
+        Self { run: name.to_owned(), state, totals, ..Self::default() }
     }
 
     /// A run of which nothing was read yet.
     #[must_use]
     pub fn unread(name: &str) -> Self {
-        Self::empty(name, State::Unread, &Record::default())
+        Self::empty(name, State::Unread)
     }
 
     /// A run that cannot be read.
     #[must_use]
     pub fn unreadable(name: &str, problem: &Problem) -> Self {
         let problems = vec![problem.detail.clone()];
-        Self { problems, ..Self::empty(name, State::Incomplete, &Record::default()) }
+        Self { problems, ..Self::empty(name, State::Incomplete) }
     }
 }
 

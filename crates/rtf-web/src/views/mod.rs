@@ -25,3 +25,8 @@ pub use signal::{Signal, SignalList, Signals};
 pub use significance::Significance;
 pub use suite::{Snapshot, Suite, Suites};
 pub use test::{Test, TestDetail, TestPage, TestState};
+
+/// For serde: a value that is left out.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}

@@ -83,22 +83,19 @@ impl Signal {
     /// The view of a signal and of its curve.
     fn of(series: SignalSummary, curve: &SignalOutline) -> Self {
         let (times, values) = curve.points().into_iter().unzip();
-        let SignalSummary { name, unit, low, high, count, min, mean, max, last, .. } = series;
-        let since = series.since.map(|since| since.0);
-        let (outside, problem) = (series.outside, series.problem);
         Self {
-            name,
-            unit,
-            low,
-            high,
-            count,
-            min,
-            mean,
-            max,
-            last,
-            outside,
-            problem,
-            since,
+            name: series.name,
+            unit: series.unit,
+            low: series.low,
+            high: series.high,
+            count: series.count,
+            min: series.min,
+            mean: series.mean,
+            max: series.max,
+            last: series.last,
+            outside: series.outside,
+            problem: series.problem,
+            since: series.since.map(|since| since.0),
             times,
             values,
         }

@@ -138,7 +138,7 @@ impl Snapshot {
     /// A view of a whole run.
     #[must_use]
     pub fn of(name: &str, index: &Index) -> Self {
-        let (info, record) = (RunInfo::of(name, index), index.record());
+        let (info, record) = (RunInfo::of(name, index), &index.record);
         let over = info.state.is_over();
         Self {
             suites: record.suites.iter().map(|suite| Suite::of(suite, record, over)).collect(),

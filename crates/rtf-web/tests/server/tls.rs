@@ -76,7 +76,7 @@ fn from_beyond_this_machine_reading_needs_the_token_too() {
 #[test]
 fn a_certificate_is_made_when_there_is_none() {
     let (world, _run) = World::with(&Settings { allow_remote: true, ..settings() });
-    let fingerprint = world.server.fingerprint().expect("a fingerprint");
+    let fingerprint = world.server.fingerprint.as_ref().expect("a fingerprint");
     assert_eq!(fingerprint.len(), 32 * 3 - 1, "{fingerprint}");
     let mut plain = TcpStream::connect(world.address()).unwrap();
     plain.write_all(b"GET /api/v1 HTTP/1.0\r\nHost: localhost\r\n\r\n").unwrap();

@@ -358,7 +358,7 @@ impl World {
     }
 
     pub fn address(&self) -> SocketAddr {
-        self.server.address()
+        self.server.address
     }
 
     pub fn token(&self) -> String {

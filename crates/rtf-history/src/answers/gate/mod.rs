@@ -144,15 +144,13 @@ impl Store {
         let baseline = self.test_histories(&select(runs.ids().collect()), tests)?;
         let compared = Compared::new(runs, run, baseline);
         let new_failures = limits.max_new_failures.map(|max| compared.new_failures(max));
-        let flaky = match limits.max_flaky {
-            Some(max) => {
-                let all = runs.ids().chain([runs.run.id.clone()]).collect();
-                let flaky = self.flaky(&select(all), tests)?;
-                let flaky = flaky.tests.into_iter().map(|test| test.identity).collect();
-                Some(compared.flaky(max, flaky))
-            }
-            None => None,
-        };
+        let flaky = limits.max_flaky.map(|max| {
+            let all = runs.ids().chain([runs.run.id.clone()]).collect();
+            let flaky = self.flaky(&select(all), tests)?;
+            let flaky = flaky.tests.into_iter().map(|test| test.identity).collect();
+            Ok::<_, StoreError>(compared.flaky(max, flaky))
+        });
+        let flaky = flaky.transpose()?;
         let no_regression: Vec<_> =
             limits.no_regression.iter().map(|limit| compared.regressions(limit)).collect();
         Ok(GateReport {

@@ -1,6 +1,6 @@
 //! Measurements that are worse than in the baseline.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::str::FromStr;
 
 use rtf_model::Verdict;
@@ -212,8 +212,7 @@ fn green_values(test: &TestHistory, series: &SeriesName, robot: &str) -> Vec<f64
     let is_green = |verdict| verdict == Verdict::Passed;
     let green = test.results.iter().filter(|it| is_green(it.verdict) && it.robot == robot);
     let green: HashSet<&str> = green.map(|result| result.run.as_str()).collect();
-    let by_name: HashMap<_, _> = test.series.iter().map(|it| (&it.series, &it.points)).collect();
-    let points = by_name.get(series).into_iter().flat_map(|points| points.iter());
+    let points = test.series.iter().filter(|it| it.series == *series).flat_map(|it| &it.points);
     points.filter(|it| green.contains(it.run.as_str())).filter_map(|it| it.value).collect()
 }
 

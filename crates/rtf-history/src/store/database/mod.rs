@@ -101,6 +101,11 @@ impl Database {
         self.for_each(sql, values, &mut |_| Ok(()))
     }
 
+    /// Executes statements, each with this id.
+    pub fn delete(&self, statements: &[&str], id: i64) -> Result<(), DatabaseError> {
+        statements.iter().try_for_each(|statement| self.execute(statement, &[id.into()]))
+    }
+
     /// Executes a statement, and reads the rows of its answer.
     pub fn rows<T>(
         &self,

@@ -10,7 +10,7 @@ use postgres::fallible_iterator::FallibleIterator as _;
 use postgres::types::ToSql;
 use postgres::{Client, Config, Statement};
 
-use super::tls::{Encryption, connector};
+use super::tls::{Encryption, SslMode, connector};
 use super::{DatabaseError, Row, Value, Visit, dialect};
 use crate::store::schema;
 
@@ -59,7 +59,7 @@ impl PostgresUrl {
         for option in query.split('&').filter(|option| !option.is_empty()) {
             match option.split_once('=') {
                 Some(("sslmode", mode)) => {
-                    encryption.mode = mode.parse().map_err(|()| UrlError::SslMode)?;
+                    encryption.mode = SslMode::parse(mode).ok_or(UrlError::SslMode)?;
                 }
                 Some(("sslrootcert", file)) => encryption.root = Some(file.into()),
                 _ => rest.push(option),

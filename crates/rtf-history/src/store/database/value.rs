@@ -64,33 +64,23 @@ impl ToSql for Value<'_> {
     ) -> Result<IsNull, Box<dyn std::error::Error + Sync + Send>> {
         match self {
             Self::Null => Ok(IsNull::Yes),
-            Self::Int(number) => number.to_sql(ty, out),
-            Self::Real(number) => number.to_sql(ty, out),
+            Self::Int(number) => number.to_sql_checked(ty, out),
+            Self::Real(number) => number.to_sql_checked(ty, out),
             // PostgreSQL stores no NUL in a text.
             Self::Text(text) if text.contains('\0') => {
-                text.replace('\0', "\u{fffd}").to_sql(ty, out)
+                text.replace('\0', "\u{fffd}").to_sql_checked(ty, out)
             }
-            Self::Text(text) => text.to_sql(ty, out),
-            Self::Blob(bytes) => bytes.to_sql(ty, out),
+            Self::Text(text) => text.to_sql_checked(ty, out),
+            Self::Blob(bytes) => bytes.to_sql_checked(ty, out),
         }
     }
 
+    /// Each value checks the type itself.
     fn accepts(_: &Type) -> bool {
         true
     }
 
-    fn to_sql_checked(
-        &self,
-        ty: &Type,
-        out: &mut BytesMut,
-    ) -> Result<IsNull, Box<dyn std::error::Error + Sync + Send>> {
-        match self {
-            Self::Null => Ok(IsNull::Yes),
-            Self::Int(number) => number.to_sql_checked(ty, out),
-            Self::Real(number) => number.to_sql_checked(ty, out),
-            Self::Text(_) | Self::Blob(_) => self.to_sql(ty, out),
-        }
-    }
+    postgres::types::to_sql_checked!();
 }
 
 /// A row of an answer.

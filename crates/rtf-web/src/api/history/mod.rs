@@ -13,9 +13,9 @@ use self::types::{
     HistoryCampaigns, HistoryChange, HistoryComparison, HistoryMatrix, HistoryRuns, SeriesTrend,
     SlowTests, TestHistories,
 };
-use super::details::JsonResult;
 use super::problems::Problems;
 use super::query::{QueryParams, limit};
+use crate::app::JsonResult;
 use crate::problem::Problem;
 
 /// Default number of tests per page.

@@ -9,9 +9,8 @@ use rtf_history::{RunSelection, Store, StoreError, TestAttributes};
 use serde::{Deserialize, Deserializer};
 use utoipa::IntoParams;
 
-use crate::api::details::JsonResult;
 use crate::api::query::QueryParams;
-use crate::app::{App, JsonText, blocking};
+use crate::app::{App, JsonResult, JsonText, blocking};
 use crate::history_source::{HistorySource, TestCondition};
 use crate::problem::Problem;
 
@@ -140,10 +139,6 @@ impl From<StoreError> for Problem {
         if let Some(cause) = std::error::Error::source(&error) {
             detail += &format!(": {cause}");
         }
-        let problem = Self::new(status, detail);
-        match error.hint() {
-            Some(hint) => problem.hint(hint),
-            None => problem,
-        }
+        Self { hint: error.hint().map(str::to_owned), ..Self::new(status, detail) }
     }
 }

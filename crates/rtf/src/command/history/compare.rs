@@ -78,7 +78,7 @@ fn differences_of(test: &TestComparison) -> Vec<String> {
 
 /// The shares of passed results, in thousandths.
 fn shares(test: &TestComparison) -> (u32, u32) {
-    let share = |counts: &rtf_history::answers::VerdictCounts| {
+    let share = |counts: &rtf_history::answers::RunCounts| {
         counts.of(rtf_model::Verdict::Passed) * 1000 / counts.total().max(1)
     };
     (share(&test.verdicts_a), share(&test.verdicts_b))
