@@ -3,12 +3,12 @@
 import type { RunFilter } from './run-filter';
 import type {
     ApiRoot,
-    Attempt,
-    MeasurementEntry,
-    RunInfo,
+    Measurements,
+    RunList,
     Snapshot,
     Started,
-    Test,
+    TestDetail,
+    TestPage,
 } from './api-types';
 
 const BASE = '/api/v1';
@@ -115,36 +115,26 @@ export function address(
 
 export const root = () => get<ApiRoot>('');
 
-export interface RunPage {
-    runs: RunInfo[];
-    next?: string;
-    /** Number of runs that are still being read: they may match, too. */
-    unread?: number;
-}
-
 export const runs = (before?: string, limit = 50, filter: RunFilter = {}) =>
-    get<RunPage>(path(['runs'], { limit, before, ...filter }));
+    get<RunList>(path(['runs'], { limit, before, ...filter }));
 
 export const snapshot = (run: string, signal: AbortSignal | null = null) =>
     get<Snapshot>(path(['runs', run, 'snapshot']), signal);
 
 export const test = (run: string, id: number, signal: AbortSignal | null = null) =>
-    get<{ test: Test; attempts: Attempt[]; command?: string; replay?: string }>(
-        path(['runs', run, 'tests', id]),
-        signal,
-    );
+    get<TestDetail>(path(['runs', run, 'tests', id]), signal);
 
 /** The tests with a case whose path contains these words; the first 1000. */
 export async function testsWithCase(run: string, words: string, signal: AbortSignal) {
     const route = path(['runs', run, 'tests'], { case: words, limit: 1000 });
-    const { tests } = await get<{ tests: Test[] }>(route, signal);
+    const { tests } = await get<TestPage>(route, signal);
     return new Set(tests.map(({ id }) => id));
 }
 
 /** The first 1000 measurements of an attempt. */
 export async function measurements(run: string, test: number, attempt: number) {
     const route = ['runs', run, 'tests', test, 'attempts', attempt, 'measurements'];
-    const page = await get<{ measurements: MeasurementEntry[] }>(path(route, { limit: 1000 }));
+    const page = await get<Measurements>(path(route, { limit: 1000 }));
     return page.measurements;
 }
 

@@ -1,7 +1,7 @@
 // Responds to the page's requests from the data of a report, as the server does.
 
-import { ApiError, type RunPage, type Source } from '../api';
-import type { ApiRoot, Asked, Cases, Signal, Snapshot } from '../api-types';
+import { ApiError, type Source } from '../api';
+import type { ApiRoot, Asked, Cases, RunList, Signal, Snapshot } from '../api-types';
 import { LIST_NAMES, type ListName } from '../record/detail';
 import type { Data } from './embedded';
 
@@ -66,7 +66,7 @@ export class Answers {
         };
     }
 
-    private runs(): RunPage {
+    private runs(): RunList {
         return { runs: [this.overview.snapshot.info] };
     }
 
