@@ -175,13 +175,20 @@ export class RunRecord {
         return totals;
     }
 
+    fixturesOf(suite: Suite): Fixture[] {
+        return suite.fixtures.flatMap((id) => this.fixtures[id] ?? []);
+    }
+
+    hooksOf(suite: Suite): Hook[] {
+        return suite.hooks.flatMap((id) => this.hooks[id] ?? []);
+    }
+
     /** The problems of a suite apart from its tests. */
     suiteProblems(suite: Suite): string[] {
-        const fixtures = suite.fixtures.flatMap((id) => this.fixtures[id] ?? []);
-        const hooks = suite.hooks.flatMap((id) => this.hooks[id] ?? []);
+        const tolerates = suite.tolerates_collapse === true;
         return [
-            ...fixtures.flatMap((each) => fixtureProblems(each, suite.tolerates_collapse === true)),
-            ...hooks.flatMap((each) => hookProblems(each, this.isOver)),
+            ...this.fixturesOf(suite).flatMap((each) => fixtureProblems(each, tolerates)),
+            ...this.hooksOf(suite).flatMap((each) => hookProblems(each, this.isOver)),
         ];
     }
 
