@@ -142,7 +142,7 @@ export class Details {
 
     private keep(): void {
         const { all: lists, more, signals, questions, cases } = this;
-        this.run.keep(this.key, { lists, more, signals, questions, cases });
+        this.run.kept.set(this.key, { lists, more, signals, questions, cases });
     }
 
     /** Restores details that were loaded before. */

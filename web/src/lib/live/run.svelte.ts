@@ -9,6 +9,7 @@ import type { Asked, Signal } from '../api-types';
 import type { Event } from '../event';
 import type { CaseList } from '../record/cases';
 import type { ListName, Lists } from '../record/detail';
+import { Recent } from '../recent';
 import { RunRecord } from '../record/record';
 import { Feed, type Connection } from './feed';
 
@@ -51,7 +52,7 @@ export class LiveRun {
     /** Incremented with each new record: loaded details are outdated. */
     generation = $state(0);
     /** Loaded details of attempts, starts and hook runs: they stay when the server exits. */
-    readonly kept = new Map<string, Kept>();
+    readonly kept = new Recent<Kept>(KEPT);
     private readonly feed: Feed;
     private readonly listeners = new Set<DetailListener>();
     private readonly watched = new Map<symbol, string[]>();
@@ -89,16 +90,6 @@ export class LiveRun {
     close(): void {
         clearInterval(this.timer);
         this.feed.close();
-    }
-
-    /** Keeps loaded details; drops the least recently used ones. */
-    keep(key: string, kept: Kept): void {
-        this.kept.delete(key);
-        this.kept.set(key, kept);
-        for (const old of this.kept.keys()) {
-            if (this.kept.size <= KEPT) break;
-            this.kept.delete(old);
-        }
     }
 
     private tick(): void {
