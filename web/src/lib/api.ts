@@ -93,11 +93,10 @@ export async function get<T>(path: string, signal: AbortSignal | null = null): P
     return (await (await request(path, { signal })).json()) as T;
 }
 
+export type Query = Record<string, string | number | undefined>;
+
 /** A path with encoded parts and a query. */
-export function path(
-    parts: (string | number)[],
-    query: Record<string, string | number | undefined> = {},
-): string {
+export function path(parts: (string | number)[], query: Query = {}): string {
     const route = parts.map((part) => `/${encodeURIComponent(part)}`).join('');
     const pairs = Object.entries(query).flatMap(([name, value]) =>
         value === undefined ? [] : [`${name}=${encodeURIComponent(value)}`],
@@ -106,10 +105,7 @@ export function path(
 }
 
 /** The address of a route, for links and streams. */
-export function address(
-    parts: (string | number)[],
-    query: Record<string, string | number | undefined> = {},
-): string {
+export function address(parts: (string | number)[], query: Query = {}): string {
     return BASE + path(parts, query);
 }
 
