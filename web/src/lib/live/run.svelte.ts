@@ -5,22 +5,11 @@
 
 import { flushSync } from 'svelte';
 import * as api from '../api';
-import type { Asked, Signal } from '../api-types';
 import type { Event } from '../event';
-import type { CaseList } from '../record/cases';
-import type { ListName, Lists } from '../record/detail';
 import { Recent } from '../recent';
 import { RunRecord } from '../record/record';
+import type { Content } from './details.svelte';
 import { Feed, type Connection } from './feed';
-
-/** The loaded details of one attempt, start or run. */
-export interface Kept {
-    lists: Lists;
-    more: Partial<Record<ListName, number>>;
-    signals: readonly Signal[];
-    questions: readonly Asked[];
-    cases: CaseList;
-}
 
 /** Maximum number of details that are kept. */
 const KEPT = 30;
@@ -52,7 +41,7 @@ export class LiveRun {
     /** Incremented with each new record: loaded details are outdated. */
     generation = $state(0);
     /** Loaded details of attempts, starts and hook runs: they stay when the server exits. */
-    readonly kept = new Recent<Kept>(KEPT);
+    readonly kept = new Recent<Content>(KEPT);
     private readonly feed: Feed;
     private readonly listeners = new Set<DetailListener>();
     private readonly watched = new Map<symbol, string[]>();

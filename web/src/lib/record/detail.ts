@@ -21,13 +21,17 @@ export interface Lists {
 }
 
 export type ListName = keyof Lists;
-export const LIST_NAMES: readonly ListName[] = [
-    'messages',
-    'measurements',
-    'attachments',
-    'stacks',
-    'output',
-];
+
+/** The lists to which events add entries. */
+export const LIST_OF: { [type in Event['type']]?: ListName } = {
+    message: 'messages',
+    measured: 'measurements',
+    attached: 'attachments',
+    'stack-dumped': 'stacks',
+    output: 'output',
+};
+
+export const LIST_NAMES: readonly ListName[] = Object.values(LIST_OF);
 
 export function emptyLists(): Lists {
     return { messages: [], measurements: [], attachments: [], stacks: [], output: [] };
