@@ -11,6 +11,7 @@ import type {
 } from '../api-types';
 import { address } from '../api';
 import type { Event, Measurement } from '../event';
+import { present } from '../present';
 
 export interface Lists {
     messages: MessageEntry[];
@@ -60,8 +61,7 @@ export function addToLists(lists: Lists, event: Event, run: string): void {
             break;
         case 'output': {
             const { stream, text, omitted_bytes } = event;
-            const gap = omitted_bytes === undefined ? {} : { omitted_bytes };
-            append(lists.output, { seq, at, stream, text, ...gap });
+            append(lists.output, { seq, at, stream, text, ...present({ omitted_bytes }) });
             break;
         }
     }

@@ -14,6 +14,7 @@ import type {
     Totals,
 } from '../api-types';
 import { VERDICTS, type Event, type SuitePrepared, type Verdict } from '../event';
+import { present } from '../present';
 import { applyToFixture, fixtureProblems, plannedFixture } from './fixture';
 import { applyToHook, hookProblems, plannedHook } from './hook';
 import { applyToTest, plannedTest, testState } from './test';
@@ -94,6 +95,7 @@ export class RunRecord {
 
     private applyToRun(event: Event): void {
         const { data } = this;
+        const suite = 'suite' in event ? data.suites[event.suite] : undefined;
         switch (event.type) {
             case 'run-started':
                 this.noSkips = event.manifest?.no_skips === true;
@@ -111,11 +113,11 @@ export class RunRecord {
                 break;
             case 'fixture-planned':
                 data.fixtures[event.fixture] = plannedFixture(event);
-                data.suites[event.suite]?.fixtures.push(event.fixture);
+                suite?.fixtures.push(event.fixture);
                 break;
             case 'hook-planned':
                 data.hooks[event.hook] = plannedHook(event);
-                data.suites[event.suite]?.hooks.push(event.hook);
+                suite?.hooks.push(event.hook);
                 break;
             case 'test-planned':
                 data.tests[event.test] = plannedTest(event);
@@ -124,21 +126,13 @@ export class RunRecord {
                 data.warnings.push(event.diagnostic);
                 break;
             case 'suite-started':
-                Object.assign(data.suites[event.suite] ?? {}, {
-                    state: 'running',
-                    started: event.at,
-                });
+                Object.assign(suite ?? {}, { state: 'running', started: event.at });
                 break;
-            case 'suite-prepared': {
-                const suite = data.suites[event.suite];
+            case 'suite-prepared':
                 if (suite !== undefined) suite.prepared ??= preparedOf(event);
                 break;
-            }
             case 'suite-finished':
-                Object.assign(data.suites[event.suite] ?? {}, {
-                    state: 'finished',
-                    finished: event.at,
-                });
+                Object.assign(suite ?? {}, { state: 'finished', finished: event.at });
                 break;
             case 'run-finished':
                 data.info.state = event.interrupted == null ? 'finished' : 'interrupted';
@@ -210,8 +204,10 @@ function plannedSuite(plan: Extract<Event, { type: 'suite-planned' }>, noSkips: 
         file: plan.file ?? '',
         description: plan.description ?? '',
         environment: plan.environment ?? '',
-        ...(plan.tolerates_collapse ? { tolerates_collapse: true } : {}),
-        ...(plan.skips_fail || noSkips ? { skips_fail: true } : {}),
+        ...present({
+            tolerates_collapse: plan.tolerates_collapse || null,
+            skips_fail: plan.skips_fail || noSkips || null,
+        }),
         state: 'pending',
         totals: noTotals(),
         problems: [],
@@ -226,9 +222,7 @@ function preparedOf(event: Extract<Event, { type: 'suite-prepared' }>): SuitePre
     return {
         suite,
         join_command,
-        ...(network == null ? {} : { network }),
-        ...(ports === undefined ? {} : { ports }),
-        ...(variables === undefined ? {} : { variables }),
+        ...present({ network, ports, variables }),
     };
 }
 
