@@ -2,12 +2,22 @@
 // independent of drawing.
 
 import type { AttemptRow, Fixture, Hook } from './api-types';
-import type { TestState } from './event';
-import { marks, spans, type Mark, type Span } from './record/fixture';
+import { TEST_STATES } from './event';
+import { marks, spans, type Mark } from './record/fixture';
 import type { RunRecord } from './record/record';
 import type { Shown } from './route';
 
-export type BarState = TestState | Span['state'] | 'hook' | 'hook-failed' | 'fault';
+/** The states of bars: of tests, fixtures, hooks and faults. Each has a colour, `--bar-…`. */
+export const BAR_STATES = [
+    ...TEST_STATES,
+    'starting',
+    'ready',
+    'stopping',
+    'hook',
+    'hook-failed',
+    'fault',
+] as const;
+export type BarState = (typeof BAR_STATES)[number];
 
 export interface Bar {
     from: number;
