@@ -4,7 +4,7 @@
 import { get, path, type Query } from '../api';
 import type { Asked, Cases, Questions, Said, Signal, Signals } from '../api-types';
 import type { Event } from '../event';
-import { messageOf } from '../message-of';
+import { Task } from '../task.svelte';
 import { CaseList } from '../record/cases';
 import {
     addToLists,
@@ -60,7 +60,7 @@ export class Details {
     isLoading = $state(true);
     /** Whether all pages have been loaded. */
     isLoaded = $state(false);
-    problem: string | null = $state(null);
+    readonly task = new Task();
     private all = new Content();
     private signalsDue: ReturnType<typeof setTimeout> | null = null;
     private waiting: Event[] | null = [];
@@ -133,7 +133,7 @@ export class Details {
         if (kept === undefined || this.closing.signal.aborted) return;
         this.all = kept;
         this.isLoaded = true;
-        this.problem = null;
+        this.task.problem = null;
         this.version += 1;
     }
 
@@ -163,15 +163,7 @@ export class Details {
 
     /** Whether it succeeded. */
     private async attempt(work: () => Promise<void>): Promise<boolean> {
-        let isDone = false;
-        try {
-            await work();
-            this.problem = null;
-            isDone = true;
-        } catch (problem) {
-            if (this.closing.signal.aborted) return false;
-            this.problem = messageOf(problem);
-        }
+        const isDone = await this.task.run(work, this.closing.signal);
         this.version += 1;
         return isDone;
     }

@@ -4,6 +4,7 @@
 import { ApiError, snapshot } from '../api';
 import type { RunStateName, Snapshot } from '../api-types';
 import type { Event } from '../event';
+import { messageOf } from '../task.svelte';
 import { RunRecord } from '../record/record';
 import { followRun } from './shared-stream';
 import type { SseEvent } from './sse';
@@ -92,7 +93,7 @@ export class Feed {
             return 'over';
         }
         const status = problem instanceof ApiError ? problem.status : 0;
-        const reason = problem instanceof Error ? problem.message : String(problem);
+        const reason = messageOf(problem);
         if (status >= 400 && status < 500) {
             this.listener.connected({ kind: 'refused', status, reason });
             return 'over';
