@@ -173,31 +173,25 @@ export class Feed {
     }
 
     /** Waits until the page is visible, or the feed is closed. */
-    private shown(): Promise<void> {
-        return new Promise((resolve) => {
-            const done = () => {
-                if (document.hidden && !this.closing.signal.aborted) return;
-                document.removeEventListener('visibilitychange', done);
-                this.closing.signal.removeEventListener('abort', done);
-                resolve();
-            };
-            document.addEventListener('visibilitychange', done);
-            this.closing.signal.addEventListener('abort', done);
-            done();
-        });
+    private async shown(): Promise<void> {
+        while (document.hidden && !this.closing.signal.aborted)
+            await this.oneOf([document, 'visibilitychange']);
     }
 
     private pause(milliseconds: number): Promise<void> {
+        return this.oneOf([window, 'online'], [AbortSignal.timeout(milliseconds), 'abort']);
+    }
+
+    /** Waits for one of these events, or until the feed is closed. */
+    private oneOf(...events: [EventTarget, string][]): Promise<void> {
+        const waiting = new AbortController();
         return new Promise((resolve) => {
             const done = () => {
-                clearTimeout(timer);
-                removeEventListener('online', done);
-                this.closing.signal.removeEventListener('abort', done);
+                waiting.abort();
                 resolve();
             };
-            const timer = setTimeout(done, milliseconds);
-            addEventListener('online', done);
-            this.closing.signal.addEventListener('abort', done);
+            for (const [target, type] of [...events, [this.closing.signal, 'abort'] as const])
+                target.addEventListener(type, done, { signal: waiting.signal });
         });
     }
 }
