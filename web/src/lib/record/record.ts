@@ -20,26 +20,23 @@ import { applyToHook, hookProblems, plannedHook } from './hook';
 import { applyToTest, plannedTest, testState } from './test';
 
 export class RunRecord {
+    readonly info: RunInfo;
+    readonly suites: readonly Suite[];
+    readonly fixtures: readonly Fixture[];
+    readonly hooks: readonly Hook[];
+    readonly tests: readonly Test[];
     /** The run's `--no-skips`; a snapshot has it in its suites. */
     private noSkips = false;
 
-    constructor(private readonly data: Snapshot = emptySnapshot()) {}
+    /** The parts of the data are never replaced. */
+    constructor(private readonly data: Snapshot = emptySnapshot()) {
+        this.info = data.info;
+        this.suites = data.suites;
+        this.fixtures = data.fixtures;
+        this.hooks = data.hooks;
+        this.tests = data.tests;
+    }
 
-    get info(): RunInfo {
-        return this.data.info;
-    }
-    get suites(): readonly Suite[] {
-        return this.data.suites;
-    }
-    get fixtures(): readonly Fixture[] {
-        return this.data.fixtures;
-    }
-    get hooks(): readonly Hook[] {
-        return this.data.hooks;
-    }
-    get tests(): readonly Test[] {
-        return this.data.tests;
-    }
     get warnings() {
         return this.data.warnings;
     }
