@@ -8,13 +8,16 @@ import { compile } from 'json-schema-to-typescript';
 const SCHEMAS = new URL('../../schemas/', import.meta.url);
 const TARGET = new URL('../src/generated/', import.meta.url);
 
-/** A `$ref` with sibling properties means both; the compiler reads only one. */
-function joinReferences(node) {
-    if (Array.isArray(node)) return node.map(joinReferences);
+/** A copy in which `change` replaces each object, after the objects in it. */
+function mapObjects(node, change) {
+    if (Array.isArray(node)) return node.map((each) => mapObjects(each, change));
     if (node === null || typeof node !== 'object') return node;
-    const { $ref, properties, required, ...rest } = Object.fromEntries(
-        Object.entries(node).map(([name, value]) => [name, joinReferences(value)]),
-    );
+    const parts = Object.entries(node).map(([name, value]) => [name, mapObjects(value, change)]);
+    return change(Object.fromEntries(parts));
+}
+
+/** A `$ref` with sibling properties means both; the compiler reads only one. */
+function joinReferences({ $ref, properties, required, ...rest }) {
     if ($ref !== undefined && properties !== undefined) {
         const own = { type: 'object', properties, required: required ?? [] };
         return { ...rest, type: undefined, allOf: [{ $ref }, own] };
@@ -24,27 +27,18 @@ function joinReferences(node) {
 
 /** A property without keywords is any JSON value; the compiler would make it an object. */
 function typeAnyValues(node) {
-    if (Array.isArray(node)) return node.map(typeAnyValues);
-    if (node === null || typeof node !== 'object') return node;
-    const typed = Object.fromEntries(
-        Object.entries(node).map(([name, value]) => [name, typeAnyValues(value)]),
-    );
-    for (const property of Object.values(typed.properties ?? {})) {
+    for (const property of Object.values(node.properties ?? {})) {
         const isAny = Object.keys(property).every((keyword) => keyword === 'description');
         if (isAny) property.tsType = 'unknown';
     }
-    return typed;
+    return node;
 }
 
 /** The API omits missing values, and never sends null (spec/web.md). */
 function leaveOutNull(node) {
-    if (Array.isArray(node)) return node.map(leaveOutNull);
-    if (node === null || typeof node !== 'object') return node;
     // Other keywords next to a reference would create another type.
     if (node.$ref !== undefined) return { $ref: node.$ref };
-    const clear = Object.fromEntries(
-        Object.entries(node).map(([name, value]) => [name, leaveOutNull(value)]),
-    );
+    const clear = { ...node };
     if (Array.isArray(clear.type)) clear.type = clear.type.filter((each) => each !== 'null');
     if (Array.isArray(clear.oneOf)) {
         const others = clear.oneOf.filter((each) => each.type !== 'null');
@@ -60,7 +54,7 @@ async function api() {
     const { $defs: model } = await read('event');
     const schemas = Object.entries(components.schemas).map(([name, schema]) => [
         name,
-        name in model || name === 'Event' ? schema : leaveOutNull(schema),
+        name in model || name === 'Event' ? schema : mapObjects(schema, leaveOutNull),
     ]);
     const text = JSON.stringify(Object.fromEntries(schemas));
     const $defs = JSON.parse(text.replaceAll('#/components/schemas/', '#/$defs/'));
@@ -78,8 +72,7 @@ for (const [name, schema] of [
     ['event', await read('event')],
     ['api', await api()],
 ]) {
-    const types = await compile(joinReferences(typeAnyValues(schema)), name, {
-        additionalProperties: false,
-    });
+    const clear = mapObjects(mapObjects(schema, typeAnyValues), joinReferences);
+    const types = await compile(clear, name, { additionalProperties: false });
     await writeFile(new URL(`${name}.d.ts`, TARGET), types);
 }

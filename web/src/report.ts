@@ -5,6 +5,7 @@ import type { CampaignReport } from './generated/api';
 import CampaignApp from './components/CampaignApp.svelte';
 import App from './components/App.svelte';
 import { readFrom } from './lib/api';
+import { messageOf } from './lib/task.svelte';
 import { Answers } from './lib/report/answers';
 import { EmbeddedData } from './lib/report/embedded';
 import './styles/base.css';
@@ -27,7 +28,7 @@ async function start(target: HTMLElement): Promise<void> {
         target.replaceChildren();
         mount(App, { target });
     } catch (problem) {
-        const reason = problem instanceof Error ? problem.message : String(problem);
+        const reason = messageOf(problem);
         target.textContent = `This report cannot be read, the file may be damaged: ${reason}`;
     }
 }

@@ -3,30 +3,15 @@
 
 import type * as api from '../generated/api';
 
+export type * from '../generated/api';
 export type {
-    Asked,
     Attached as AttachmentEntry,
-    Case,
-    Cases,
-    Counts,
-    Fixture,
-    Hook,
     Measured as MeasurementEntry,
     Printed as OutputEntry,
-    Questions,
-    Parameter,
-    ProvidedValue,
     Said as MessageEntry,
     Server as ApiRoot,
     Stack as StackEntry,
-    Signal,
-    Signals,
-    Start,
-    Started,
     State as RunStateName,
-    RunInfo,
-    Suite,
-    Totals,
 } from '../generated/api';
 
 /** An entry in a list of an attempt: an event's number, time and content. */
@@ -46,8 +31,3 @@ export interface Test extends api.Test {
 export interface Snapshot extends api.Snapshot {
     tests: Test[];
 }
-
-export type Attempt = api.Attempt & {
-    /** Why it is being stopped. */
-    stopping?: string;
-};

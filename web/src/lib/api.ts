@@ -3,12 +3,12 @@
 import type { RunFilter } from './run-filter';
 import type {
     ApiRoot,
-    Attempt,
-    MeasurementEntry,
-    RunInfo,
+    Measurements,
+    RunList,
     Snapshot,
     Started,
-    Test,
+    TestDetail,
+    TestPage,
 } from './api-types';
 
 const BASE = '/api/v1';
@@ -93,11 +93,10 @@ export async function get<T>(path: string, signal: AbortSignal | null = null): P
     return (await (await request(path, { signal })).json()) as T;
 }
 
+export type Query = Record<string, string | number | undefined>;
+
 /** A path with encoded parts and a query. */
-export function path(
-    parts: (string | number)[],
-    query: Record<string, string | number | undefined> = {},
-): string {
+export function path(parts: (string | number)[], query: Query = {}): string {
     const route = parts.map((part) => `/${encodeURIComponent(part)}`).join('');
     const pairs = Object.entries(query).flatMap(([name, value]) =>
         value === undefined ? [] : [`${name}=${encodeURIComponent(value)}`],
@@ -106,45 +105,32 @@ export function path(
 }
 
 /** The address of a route, for links and streams. */
-export function address(
-    parts: (string | number)[],
-    query: Record<string, string | number | undefined> = {},
-): string {
+export function address(parts: (string | number)[], query: Query = {}): string {
     return BASE + path(parts, query);
 }
 
 export const root = () => get<ApiRoot>('');
 
-export interface RunPage {
-    runs: RunInfo[];
-    next?: string;
-    /** Number of runs that are still being read: they may match, too. */
-    unread?: number;
-}
-
 export const runs = (before?: string, limit = 50, filter: RunFilter = {}) =>
-    get<RunPage>(path(['runs'], { limit, before, ...filter }));
+    get<RunList>(path(['runs'], { limit, before, ...filter }));
 
 export const snapshot = (run: string, signal: AbortSignal | null = null) =>
     get<Snapshot>(path(['runs', run, 'snapshot']), signal);
 
 export const test = (run: string, id: number, signal: AbortSignal | null = null) =>
-    get<{ test: Test; attempts: Attempt[]; command?: string; replay?: string }>(
-        path(['runs', run, 'tests', id]),
-        signal,
-    );
+    get<TestDetail>(path(['runs', run, 'tests', id]), signal);
 
 /** The tests with a case whose path contains these words; the first 1000. */
 export async function testsWithCase(run: string, words: string, signal: AbortSignal) {
     const route = path(['runs', run, 'tests'], { case: words, limit: 1000 });
-    const { tests } = await get<{ tests: Test[] }>(route, signal);
+    const { tests } = await get<TestPage>(route, signal);
     return new Set(tests.map(({ id }) => id));
 }
 
 /** The first 1000 measurements of an attempt. */
 export async function measurements(run: string, test: number, attempt: number) {
     const route = ['runs', run, 'tests', test, 'attempts', attempt, 'measurements'];
-    const page = await get<{ measurements: MeasurementEntry[] }>(path(route, { limit: 1000 }));
+    const page = await get<Measurements>(path(route, { limit: 1000 }));
     return page.measurements;
 }
 

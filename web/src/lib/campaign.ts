@@ -5,18 +5,8 @@ import { runHref, testHref } from './route';
 
 /** The height of the plot of the progress. */
 export const HEIGHT = 200;
-const [LEFT, RIGHT, TOP, BOTTOM] = [48, 14, 8, 24];
-
-export interface ProgressDrawing {
-    /** The points of the rate, and of the area of its interval. */
-    line: string;
-    band: string;
-    ticks: { y: number; text: string }[];
-    claim: number;
-    left: number;
-    right: number;
-    bottom: number;
-}
+const LEFT = 48;
+const TOP = 8;
 
 /** The page of an episode: the test that did not pass, in the run of its worker. */
 export function episodeHref({ run, test, attempt }: EpisodeRun): string {
@@ -33,27 +23,40 @@ export function intervalText(rate: { value: number; low: number; high: number })
     return `${percent(rate.value)} (${percent(rate.low)} to ${percent(rate.high)})`;
 }
 
-/** Places the progress of a rate in a plot of this width. */
-export function drawProgress(campaign: CampaignReport, width: number): ProgressDrawing {
-    const { progress, claim } = campaign;
-    const [right, bottom] = [Math.max(LEFT + 1, width - RIGHT), HEIGHT - BOTTOM];
+/** The axes of a plot of rates, from `floor` up to 100 %, in pixels. */
+export interface RateAxes {
+    left: number;
+    right: number;
+    bottom: number;
+    /** Lines at rates. */
+    ticks: { y: number; text: string }[];
+    /** The place of a rate. */
+    y: (rate: number) => number;
+}
+
+/** Places the axes in a plot of this size, without its margins. */
+export function rateAxes(right: number, bottom: number, floor = 0): RateAxes {
+    const y = (rate: number) => bottom - ((rate - floor) / (1 - floor)) * (bottom - TOP);
+    const ticks = [0, 0.25, 0.5, 0.75, 1].map((step) => {
+        const rate = floor + step * (1 - floor);
+        return { y: y(rate), text: `${+(rate * 100).toFixed(2)} %` };
+    });
+    return { left: LEFT, right: Math.max(LEFT + 1, right), bottom, ticks, y };
+}
+
+/** Places the progress of a rate in a plot of this width: the points of the rate, and of the
+ *  area of its interval. */
+export function drawProgress({ progress, claim }: CampaignReport, width: number) {
+    const axes = rateAxes(width - 14, HEIGHT - 24);
+    const { left, right, y } = axes;
     const most = progress.at(-1)?.episodes ?? 1;
-    const y = (rate: number) => bottom - rate * (bottom - TOP);
     const place = (episodes: number, rate: number) =>
-        `${(LEFT + (episodes / most) * (right - LEFT)).toFixed(1)},${y(rate).toFixed(1)}`;
+        `${(left + (episodes / most) * (right - left)).toFixed(1)},${y(rate).toFixed(1)}`;
     const line = progress.map(({ episodes, rate }) => place(episodes, rate.value));
     const upper = progress.map(({ episodes, rate }) => place(episodes, rate.high));
     const lower = progress.map(({ episodes, rate }) => place(episodes, rate.low)).reverse();
-    const ticks = [0, 0.25, 0.5, 0.75, 1].map((rate) => ({ y: y(rate), text: `${rate * 100} %` }));
-    return {
-        line: line.join(' '),
-        band: [...upper, ...lower].join(' '),
-        ticks,
-        claim: y(claim),
-        left: LEFT,
-        right,
-        bottom,
-    };
+    const band = [...upper, ...lower].join(' ');
+    return { ...axes, line: line.join(' '), band, claim: y(claim) };
 }
 
 export interface HeatMap {

@@ -5,7 +5,21 @@ import type { TestState } from './event';
 import { fullName } from './progress';
 import type { RunRecord } from './record/record';
 
-export type Change = 'broke' | 'fixed' | 'other' | 'slower' | 'faster' | 'same' | 'new' | 'gone';
+/** In display order. */
+export const CHANGE_NAMES = {
+    broke: 'passed before, not now',
+    other: 'not passed, another verdict',
+    fixed: 'passes now',
+    slower: 'slower',
+    faster: 'faster',
+    new: 'new',
+    gone: 'gone',
+    same: 'the same',
+};
+
+export type Change = keyof typeof CHANGE_NAMES;
+
+export const CHANGES = Object.keys(CHANGE_NAMES) as Change[];
 
 /** One test in both runs; `null` where it is missing. */
 export interface Pair {
@@ -19,29 +33,6 @@ export interface Side {
     test: Test;
     state: TestState;
 }
-
-/** In display order. */
-export const CHANGES: readonly Change[] = [
-    'broke',
-    'other',
-    'fixed',
-    'slower',
-    'faster',
-    'new',
-    'gone',
-    'same',
-];
-
-export const CHANGE_NAMES: Record<Change, string> = {
-    broke: 'passed before, not now',
-    other: 'not passed, another verdict',
-    fixed: 'passes now',
-    slower: 'slower',
-    faster: 'faster',
-    new: 'new',
-    gone: 'gone',
-    same: 'the same',
-};
 
 /** A test is slower or faster from 25 % and 100 ms on. */
 const FACTOR = 1.25;

@@ -2,8 +2,7 @@
 // so that ten thousand bars cost no more than fit on a screen.
 
 import { oneLine } from './ansi';
-import { VERDICTS } from './event';
-import { ticks, type Bar, type BarState, type Lane, type View } from './timeline';
+import { BAR_STATES, ticks, type Bar, type BarState, type Lane, type View } from './timeline';
 
 export const LANE = 22;
 export const TOP = 22;
@@ -24,11 +23,27 @@ export type Palette = Record<'text' | 'muted' | 'border' | 'surface' | 'font', s
     mark: string;
 };
 
+/** The canvas's context, scaled to the screen, at this size of the canvas in the page. */
+export function contextOf(
+    canvas: HTMLCanvasElement,
+    width: number,
+    height: number,
+): CanvasRenderingContext2D | null {
+    const context = canvas.getContext('2d');
+    const ratio = devicePixelRatio || 1;
+    const size = { width: Math.round(width * ratio), height: Math.round(height * ratio) };
+    // Setting the size clears the canvas, even if it does not change.
+    if (canvas.width !== size.width) canvas.width = size.width;
+    if (canvas.height !== size.height) canvas.height = size.height;
+    context?.setTransform(ratio, 0, 0, ratio, 0, 0);
+    return context;
+}
+
 /** The colours of the theme. `isDark` makes callers depend on the theme. */
 export function palette(element: Element, isDark: boolean): Palette {
     const style = getComputedStyle(element);
     const read = (name: string) => style.getPropertyValue(`--${name}`).trim();
-    const verdicts = Object.fromEntries(VERDICTS.map((each) => [each, read(`bar-${each}`)]));
+    const bars = BAR_STATES.map((each) => [each, read(`bar-${each}`)]);
     return {
         text: read('text'),
         muted: read('muted'),
@@ -36,17 +51,7 @@ export function palette(element: Element, isDark: boolean): Palette {
         surface: read('surface'),
         font: `11.5px ${read('font')}`,
         mark: isDark ? '#ffffff' : '#18202c',
-        bars: {
-            ...(verdicts as Record<(typeof VERDICTS)[number], string>),
-            running: read('bar-running'),
-            pending: read('bar-pending'),
-            starting: read('lane-starting'),
-            ready: read('lane-ready'),
-            stopping: read('lane-stopping'),
-            hook: read('bar-interrupted'),
-            'hook-failed': read('bar-failed'),
-            fault: read('bar-fault'),
-        },
+        bars: Object.fromEntries(bars) as Palette['bars'],
     };
 }
 
@@ -125,8 +130,7 @@ function drawLane(
         if (bar.state === 'collapsed' && lane.kind === 'fixture') {
             hatch(context, { x, y: top, width: to - x, height }, colours.surface);
         }
-        if (isSuite && to - x > 60)
-            drawName(context, bar.label, { x, to, y }, nameColour(bar, colours));
+        if (isSuite && to - x > 60) drawName(context, bar, { x, to, y }, colours);
     }
     for (const mark of lane.marks) drawMark(context, mark.kind, xOf(mark.at, frame), y, colours);
     context.restore();
@@ -150,7 +154,11 @@ function* pixels(lane: Lane, frame: Frame): Generator<{ x: number; to: number; b
         // A gap of one pixel separates two bars, if there is room for it.
         const to = Math.max(right - (right - x > 4 ? 1 : 0), x + 1.5);
         if (open !== null && to - x < 2.5 && x - open.to < 0.5 && open.to - open.x < 3) {
-            open = { x: open.x, to: Math.max(open.to, to), bar: worse(open.bar, bar) };
+            open = {
+                x: open.x,
+                to: Math.max(open.to, to),
+                bar: open.bar.state === 'passed' ? bar : open.bar,
+            };
             continue;
         }
         if (open !== null) yield open;
@@ -159,21 +167,13 @@ function* pixels(lane: Lane, frame: Frame): Generator<{ x: number; to: number; b
     if (open !== null) yield open;
 }
 
-function worse(a: Bar, b: Bar): Bar {
-    return a.state === 'passed' ? b : a;
-}
-
-function nameColour(bar: Bar, colours: Palette): string {
-    return bar.state === 'running' ? '#ffffff' : colours.mark;
-}
-
 function drawName(
     context: CanvasRenderingContext2D,
-    label: string,
+    { label, state }: Bar,
     { x, to, y }: { x: number; to: number; y: number },
-    colour: string,
+    colours: Palette,
 ): void {
-    context.fillStyle = colour;
+    context.fillStyle = state === 'running' ? '#ffffff' : colours.mark;
     const from = Math.max(x, 0) + 5;
     context.fillText(fit(context, oneLine(label), to - from - 4), from, y + LANE / 2 + 0.5);
 }

@@ -1,29 +1,10 @@
 // The vocabulary of a run, as in the event stream (spec/events.md).
 
-import type { Event } from '../generated/event';
+import type { Event, Verdict } from '../generated/event';
 import type { Totals } from './api-types';
 
-export type {
-    Attachment,
-    Comparison,
-    Diagnostic,
-    Event,
-    FixturePlanned,
-    FixtureProvided,
-    HookPlanned,
-    LeakedProcess,
-    Measurement,
-    Message,
-    Output,
-    SuitePlanned,
-    SuitePrepared,
-    TestFinished,
-    TestPlanned,
-    RunStarted,
-    SignalInterval,
-} from '../generated/event';
+export type * from '../generated/event';
 
-export type Verdict = Extract<Event, { type: 'test-finished' }>['verdict'];
 export type Phase = Extract<Event, { type: 'test-phase' }>['phase'];
 
 /** Every verdict, in the order in which summaries list them. */

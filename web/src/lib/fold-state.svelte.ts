@@ -1,13 +1,15 @@
 // The folded parts of the page, stored in the browser.
 
+import { load, store } from './storage';
+
 const KEY = 'rtf-folded';
 
 function stored(): string[] {
     try {
-        const list: unknown = JSON.parse(localStorage.getItem(KEY) ?? '[]');
+        const list: unknown = JSON.parse(load(KEY) ?? '[]');
         return Array.isArray(list) ? list.filter((each) => typeof each === 'string') : [];
     } catch {
-        // Storage may be disabled or invalid: then nothing is folded.
+        // It may be invalid: then nothing is folded.
         return [];
     }
 }
@@ -22,11 +24,7 @@ class FoldState {
     set(name: string, isFolded: boolean): void {
         const others = this.names.filter((each) => each !== name);
         this.names = isFolded ? [...others, name] : others;
-        try {
-            localStorage.setItem(KEY, JSON.stringify(this.names));
-        } catch {
-            // The state is kept until the page is closed.
-        }
+        store(KEY, JSON.stringify(this.names));
     }
 }
 

@@ -84,6 +84,11 @@ export function timeOfDay(text: string): string {
     return `${day} ${[time.getHours(), time.getMinutes(), time.getSeconds()].map(two).join(':')}`;
 }
 
+/** A line of a file: `arm.lua:3`. */
+export function place({ file, line }: { file: string; line?: number | null }): string {
+    return line ? `${file}:${line}` : file;
+}
+
 /** The limits of a value: `95 … 105`, `≥ 0.5`, `≤ 2`; empty without limits. */
 export function limits(low: number | null | undefined, high: number | null | undefined): string {
     if (low != null && high != null) return `${number(low)} … ${number(high)}`;

@@ -43,17 +43,9 @@ export function isGreenVerdict(
     significance: Significance | null,
     suite: Pick<Suite, 'skips_fail'> | undefined,
 ): boolean {
-    switch (significance) {
-        case 'expected':
-        case 'quarantined':
-            return true;
-        case 'unexpected-pass':
-            return false;
-        case 'skipped-itself':
-            return suite?.skips_fail !== true;
-        case null:
-            return verdict === 'passed';
-    }
+    if (significance === null) return verdict === 'passed';
+    if (significance === 'skipped-itself') return suite?.skips_fail !== true;
+    return significance !== 'unexpected-pass';
 }
 
 /** Labels of tests for which a mark decided. */

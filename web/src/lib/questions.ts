@@ -2,6 +2,7 @@
 
 import type { Asked } from './api-types';
 import type { Event } from './event';
+import { present } from './present';
 
 const PLACES = { console: 'on the console', page: 'on the page', api: 'over the API' } as const;
 
@@ -18,15 +19,6 @@ export function answerText({ closed }: Asked): string {
 /** The question of an event, which waits for an answer. */
 export function askedIn(event: Extract<Event, { type: 'question-asked' }>): Asked {
     const { at, question, text, choices, default: usual, timeout_ms, picture } = event;
-    return {
-        at,
-        question: {
-            question,
-            text,
-            timeout_ms,
-            ...(choices === undefined ? {} : { choices }),
-            ...(usual == null ? {} : { default: usual }),
-            ...(picture == null ? {} : { picture }),
-        },
-    };
+    const maybe = present({ choices, default: usual, picture });
+    return { at, question: { question, text, timeout_ms, ...maybe } };
 }

@@ -3,6 +3,7 @@
 
 import * as api from './api';
 import type { ApiRoot } from './api-types';
+import { messageOf } from './task.svelte';
 
 class Session {
     root: ApiRoot | null = $state.raw(null);
@@ -45,7 +46,7 @@ class Session {
             this.isGone = false;
         } catch (problem) {
             this.isGone = problem instanceof api.ApiError && problem.status === 0;
-            this.problem = problem instanceof Error ? problem.message : String(problem);
+            this.problem = messageOf(problem);
         }
     }
 

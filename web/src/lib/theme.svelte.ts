@@ -1,18 +1,15 @@
 // Light or dark theme: the system's, or the user's choice.
 
+import { load, store } from './storage';
+
 export type Choice = 'system' | 'light' | 'dark';
 
 const KEY = 'rtf-theme';
 const system = matchMedia('(prefers-color-scheme: dark)');
 
 function stored(): Choice {
-    try {
-        const text = localStorage.getItem(KEY);
-        return text === 'light' || text === 'dark' ? text : 'system';
-    } catch {
-        // Storage may be disabled: then the system's theme is used.
-        return 'system';
-    }
+    const text = load(KEY);
+    return text === 'light' || text === 'dark' ? text : 'system';
 }
 
 class Theme {
@@ -29,12 +26,7 @@ class Theme {
 
     choose(choice: Choice): void {
         this.choice = choice;
-        try {
-            if (choice === 'system') localStorage.removeItem(KEY);
-            else localStorage.setItem(KEY, choice);
-        } catch {
-            // The choice is kept until the page is closed.
-        }
+        store(KEY, choice === 'system' ? null : choice);
     }
 }
 

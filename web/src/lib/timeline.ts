@@ -1,13 +1,23 @@
 // The timeline of a run: lanes with bars and marks,
 // independent of drawing.
 
-import type { AttemptRow } from './api-types';
-import type { TestState } from './event';
-import { marks, spans, type Mark, type Span } from './record/fixture';
+import type { AttemptRow, Fixture, Hook } from './api-types';
+import { TEST_STATES } from './event';
+import { marks, spans, type Mark } from './record/fixture';
 import type { RunRecord } from './record/record';
 import type { Shown } from './route';
 
-export type BarState = TestState | Span['state'] | 'hook' | 'hook-failed' | 'fault';
+/** The states of bars: of tests, fixtures, hooks and faults. Each has a colour, `--bar-…`. */
+export const BAR_STATES = [
+    ...TEST_STATES,
+    'starting',
+    'ready',
+    'stopping',
+    'hook',
+    'hook-failed',
+    'fault',
+] as const;
+export type BarState = (typeof BAR_STATES)[number];
 
 export interface Bar {
     from: number;
@@ -46,58 +56,46 @@ export function lanes(record: RunRecord): Lane[] {
             faults[test.suite]?.push(...faultBars(test.id, attempt));
         }
     }
-    return record.suites.flatMap((suite) => {
-        const fixtures = suite.fixtures.flatMap((id) => record.fixtures[id] ?? []);
-        const hooks = suite.hooks.flatMap((id) => record.hooks[id] ?? []);
-        return [
-            ...apart(bars[suite.id] ?? []).map((each, row): Lane => ({
-                kind: 'suite',
-                id: suite.id,
-                name: suite.name,
-                row,
-                bars: each,
-                marks: [],
-            })),
-            ...apart(faults[suite.id] ?? [])
-                .filter((each) => each.length > 0)
-                .map((each, row): Lane => ({
-                    kind: 'fault',
-                    id: suite.id,
-                    name: 'faults',
-                    row,
-                    bars: each,
-                    marks: [],
-                })),
-            ...fixtures.map((fixture): Lane => ({
-                kind: 'fixture',
-                id: fixture.id,
-                name: fixture.name,
-                row: 0,
-                bars: spans(fixture).map((span) => ({
-                    ...span,
-                    label: `${fixture.name}: ${span.state}`,
-                    target: { what: 'fixture', id: fixture.id },
-                })),
-                marks: marks(fixture),
-            })),
-            ...hooks
-                .filter((hook) => hook.runs.length > 0)
-                .map((hook): Lane => ({
-                    kind: 'hook',
-                    id: hook.id,
-                    name: hook.name,
-                    row: 0,
-                    bars: hook.runs.map((run) => ({
-                        from: run.started,
-                        to: run.finished ?? null,
-                        state: run.problem === undefined ? 'hook' : 'hook-failed',
-                        label: `${hook.name} on ${run.trigger}: ${run.reason}`,
-                        target: { what: 'hook', id: hook.id },
-                    })),
-                    marks: [],
-                })),
-        ];
-    });
+    return record.suites.flatMap((suite) => [
+        ...apart(bars[suite.id] ?? []).map((each, row) => lane('suite', suite, each, { row })),
+        ...apart(faults[suite.id] ?? [])
+            .filter((each) => each.length > 0)
+            .map((each, row) => lane('fault', { id: suite.id, name: 'faults' }, each, { row })),
+        ...record
+            .fixturesOf(suite)
+            .map((each) => lane('fixture', each, fixtureBars(each), { marks: marks(each) })),
+        ...record
+            .hooksOf(suite)
+            .filter((hook) => hook.runs.length > 0)
+            .map((hook) => lane('hook', hook, hookBars(hook))),
+    ]);
+}
+
+function lane(
+    kind: Lane['kind'],
+    { id, name }: Pick<Lane, 'id' | 'name'>,
+    bars: Bar[],
+    more: Partial<Lane> = {},
+): Lane {
+    return { kind, id, name, row: 0, bars, marks: [], ...more };
+}
+
+function fixtureBars(fixture: Fixture): Bar[] {
+    return spans(fixture).map((span) => ({
+        ...span,
+        label: `${fixture.name}: ${span.state}`,
+        target: { what: 'fixture', id: fixture.id },
+    }));
+}
+
+function hookBars({ id, name, runs }: Hook): Bar[] {
+    return runs.map(({ started, finished, problem, trigger, reason }) => ({
+        from: started,
+        to: finished ?? null,
+        state: problem === undefined ? 'hook' : 'hook-failed',
+        label: `${name} on ${trigger}: ${reason}`,
+        target: { what: 'hook', id },
+    }));
 }
 
 /** The faults of an attempt. One that was not removed ends with it; a kill lasts for a moment. */
@@ -154,24 +152,16 @@ function clamp({ from, to }: View, end: number): View {
     return { from: start, to: start + width };
 }
 
+/** Steps of an axis in seconds: 1, 2 and 5 times a power of ten below a minute. */
+const STEPS = [
+    ...[0.001, 0.01, 0.1, 1, 10].flatMap((power) => [power, 2 * power, 5 * power]),
+    ...[1, 2, 5, 10, 30, 60, 120, 360].map((minutes) => minutes * 60),
+];
+
 /** Round moments for an axis, not more than `most` of them. */
 export function ticks({ from, to }: View, most: number): { at: number; label: string }[] {
-    const steps = [1, 2, 5].flatMap((digit) =>
-        Array.from({ length: 8 }, (_, power) => digit * 10 ** (power - 3)),
-    );
-    const seconds = [
-        ...steps.filter((step) => step < 60),
-        60,
-        120,
-        300,
-        600,
-        1800,
-        3600,
-        7200,
-        21600,
-    ];
     const wanted = (to - from) / 1e6 / Math.max(1, most);
-    const step = seconds.sort((a, b) => a - b).find((each) => each >= wanted) ?? 86_400;
+    const step = STEPS.find((each) => each >= wanted) ?? 86_400;
     const first = Math.ceil(from / 1e6 / step);
     const last = Math.floor(to / 1e6 / step);
     return Array.from({ length: Math.max(0, last - first + 1) }, (_, index) => {

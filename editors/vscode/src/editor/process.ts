@@ -41,11 +41,8 @@ export function start(
     process.stdin.on('error', () => undefined);
     const exit = new Promise<Exit>((resolve) => {
         process.on('error', (error) => {
-            resolve({
-                code: null,
-                signal: null,
-                errors: `cannot start ${program}: ${error.message}`,
-            });
+            const errors = `cannot start ${program}: ${error.message}`;
+            resolve({ code: null, signal: null, errors });
         });
         process.on('close', (code, signal) => resolve({ code, signal, errors }));
     });

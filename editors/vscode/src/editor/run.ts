@@ -7,6 +7,7 @@ import { debugCommand } from '../logic/debug';
 import { parseEvent } from '../logic/events';
 import { RunFold } from '../logic/fold';
 import { Lines } from '../logic/lines';
+import type { Location } from '../logic/list';
 import { nodesToRun } from '../logic/selection';
 import { type NextRequest, REQUEST_MS, StopRequests } from '../logic/stop';
 import type { Problem, Target, Update } from '../logic/updates';
@@ -77,24 +78,19 @@ class RtfRun {
     private readonly lines = new Lines();
     private readonly dir: string;
     private readonly started: Started;
-    private readonly tree: Tree;
-    private readonly run: vscode.TestRun;
-    private readonly chosen: readonly vscode.TestItem[];
 
-    constructor({ tree, run, chosen, log, isDebugged }: RunContext) {
-        this.tree = tree;
-        this.run = run;
-        this.chosen = chosen;
+    constructor(private readonly context: RunContext) {
+        const { tree, run, chosen, log, isDebugged } = context;
         const selections = chosen.map((item) => tree.selection(item));
-        const { folder } = selections[0] as ItemData;
-        const settings = settingsOf(folder);
-        this.dir = folder.uri.fsPath;
+        const first = selections[0] as ItemData;
+        const settings = settingsOf(first.folder);
+        this.dir = first.folder.uri.fsPath;
         const args = isDebugged
-            ? debugCommand(selections[0] as ItemData, this.dir, settings.arguments)
+            ? debugCommand(first, this.dir, settings.arguments)
             : runCommand(selections, this.dir, settings.arguments);
         log.info([settings.path, ...args].join(' '));
         chosen.forEach((item) => this.enqueue(item));
-        const attacher = new Attacher(run, selections[0] as ItemData);
+        const attacher = new Attacher(run, first);
         this.started = start(settings.path, args, this.dir, {
             onOutput: (piece) => this.read(piece),
             onErrors: (piece) => isDebugged && attacher.read(piece),
@@ -107,7 +103,7 @@ class RtfRun {
         const exit = await this.started.exit;
         stopped.dispose();
         this.fold.end('rtf ended during the test').forEach((update) => this.apply(update));
-        if (exit.errors !== '') this.write(exit.errors);
+        if (exit.errors !== '') this.context.run.appendOutput(terminalText(exit.errors));
         if (!this.fold.hasStarted) this.rejected(exit);
     }
 
@@ -129,7 +125,7 @@ class RtfRun {
     }
 
     private enqueue(item: vscode.TestItem): void {
-        this.run.enqueued(item);
+        this.context.run.enqueued(item);
         items(item.children).forEach((child) => this.enqueue(child));
     }
 
@@ -141,36 +137,36 @@ class RtfRun {
     }
 
     private apply(update: Update): void {
+        const { run } = this.context;
         const location = 'location' in update ? update.location : undefined;
         const item = update.target && this.item(update.target, location);
         if (update.kind === 'output') {
-            const position = item && location && this.tree.position(location, this.dirs(item));
-            this.run.appendOutput(terminalText(update.text), position, item);
+            const position = item && this.position(item, location);
+            run.appendOutput(terminalText(update.text), position, item);
             return;
         }
         if (item === undefined) return;
         if (update.kind === 'started') {
-            this.run.started(item);
+            run.started(item);
             return;
         }
         const messages = update.problems.map((problem) => this.message(item, problem));
         const { outcome, durationMs } = update;
-        if (outcome === 'skipped') this.run.skipped(item);
-        else if (outcome === 'passed') this.run.passed(item, durationMs);
-        else this.run[outcome](item, messages, durationMs);
+        if (outcome === 'skipped') run.skipped(item);
+        else if (outcome === 'passed') run.passed(item, durationMs);
+        else run[outcome](item, messages, durationMs);
     }
 
-    private item(
-        target: Target,
-        location: Parameters<Tree['item']>[2],
-    ): vscode.TestItem | undefined {
+    private item(target: Target, location?: Location): vscode.TestItem | undefined {
+        const { tree } = this.context;
         const uri = vscode.Uri.file(resolve(this.dir, target.file));
-        const suite = this.tree.controller.items.get(uri.toString());
-        return suite && this.tree.item(suite, target, location);
+        const suite = tree.controller.items.get(uri.toString());
+        return suite && tree.item(suite, target, location);
     }
 
-    private dirs(item: vscode.TestItem): string[] {
-        return this.tree.selection(item).dirs;
+    private position(item: vscode.TestItem, location?: Location): vscode.Location | undefined {
+        const { tree } = this.context;
+        return location && tree.position(location, tree.selection(item).dirs);
     }
 
     private message(item: vscode.TestItem, problem: Problem): vscode.TestMessage {
@@ -179,7 +175,7 @@ class RtfRun {
             expected === undefined || actual === undefined
                 ? new vscode.TestMessage(text)
                 : vscode.TestMessage.diff(text, expected, actual);
-        const position = location && this.tree.position(location, this.dirs(item));
+        const position = this.position(item, location);
         const { uri, range } = item;
         if (position !== undefined) message.location = position;
         else if (uri && range) message.location = new vscode.Location(uri, range);
@@ -189,13 +185,8 @@ class RtfRun {
     /** rtf did not start the run: its input is invalid, or it is missing. */
     private rejected({ code, signal, errors }: Exit): void {
         const text = errors.trim() || `rtf ended with ${signal ?? `code ${code}`}`;
-        for (const item of this.chosen) {
-            this.run.errored(item, this.message(item, { text }));
-        }
-    }
-
-    private write(text: string): void {
-        this.run.appendOutput(terminalText(text));
+        const { run, chosen } = this.context;
+        for (const item of chosen) run.errored(item, this.message(item, { text }));
     }
 }
 

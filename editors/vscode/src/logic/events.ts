@@ -46,77 +46,52 @@ export interface Measurement {
 
 export type Source = { test?: number; fixture?: number; hook?: number };
 
-type Events = {
-    'run-started': { run: string; manifest?: { no_skips?: boolean } };
-    'suite-planned': {
-        suite: number;
-        name: string;
-        file: string;
-        tolerates_collapse?: boolean;
-        skips_fail?: boolean;
-    };
-    'fixture-planned': { fixture: number; suite: number; name: string };
-    'hook-planned': { hook: number; suite: number; name: string };
-    'test-planned': {
-        test: number;
-        suite: number;
-        name: string;
-        repetitions: number;
-        timed?: boolean;
-        expected?: ExpectedFailure | null;
-    };
-    warning: { diagnostic: { message: string; hint?: string | null } };
-    'suite-waiting': { suite: number; lock: string; held_by: string };
-    'fixture-starting': { fixture: number; attempt: number };
-    'fixture-ready': { fixture: number };
-    'fixture-collapsed': { fixture: number; reason: string };
-    'fixture-stopped': { fixture: number; problem?: string | null };
-    'fixture-broken': { fixture: number; reason: string };
-    'hook-started': { hook: number; reason: string };
-    'hook-finished': { hook: number; problem?: string | null };
-    'test-started': { test: number; repetition: number; attempt: number };
-    'test-phase': { test: number; phase: string };
-    'test-stopping': { test: number; reason: string };
-    'test-finished': {
-        test: number;
-        verdict: Verdict;
-        reason?: string | null;
-        rerun?: boolean;
-    };
-    'test-skipped': { test: number; reason: string };
-    'test-repeated': { test: number; repetitions: number };
-    'case-started': {
-        test: number;
-        case: number;
-        name: string;
-        parent?: number | null;
-        location?: Location | null;
-    };
-    'case-finished': {
-        test: number;
-        case: number;
-        verdict: Verdict;
-        reason?: string | null;
-        duration_us?: number | null;
-        carried?: boolean;
-    };
-    message: { source: Source; test?: number | null; message: Message };
-    measured: { test: number; measurement: Measurement };
-    output: { source: Source; text: string };
-    'stack-dumped': { source: Source; text: string };
-    'run-finished': { interrupted?: string | null };
-    'runner-died': { reason: string };
-};
+/** The types of the fields. */
+interface Fields {
+    run: string;
+    manifest?: { no_skips?: boolean };
+    suite: number;
+    fixture: number;
+    hook: number;
+    test: number;
+    case: number;
+    parent?: number | null;
+    source: Source;
+    name: string;
+    file: string;
+    location?: Location | null;
+    tolerates_collapse?: boolean;
+    skips_fail?: boolean;
+    expected?: ExpectedFailure | null;
+    repetitions: number;
+    timed?: boolean;
+    repetition: number;
+    attempt: number;
+    phase: string;
+    verdict: Verdict;
+    reason: string;
+    rerun?: boolean;
+    carried?: boolean;
+    duration_us?: number | null;
+    diagnostic: { message: string; hint?: string | null };
+    message: Message;
+    measurement: Measurement;
+    text: string;
+    lock: string;
+    held_by: string;
+    problem?: string | null;
+    interrupted?: string | null;
+}
 
-/** An event; `at` is in microseconds since the run started. */
-export type RunEvent = {
-    [Type in keyof Events]: { type: Type; at: number } & Events[Type];
-}[keyof Events];
-
-export type EventOf<Type extends RunEvent['type']> = Extract<RunEvent, { type: Type }>;
+/** Fields that other events always have. */
+interface Exceptions {
+    'test-finished': { reason?: string | null };
+    'case-finished': { reason?: string | null };
+    message: { test?: number | null };
+}
 
 /** The fields that the extension reads, to compare them with schemas/event.json. */
-export const REQUIRED_FIELDS: { [Type in keyof Events]: (keyof Events[Type] & string)[] } = {
+export const REQUIRED_FIELDS = {
     'run-started': ['run', 'manifest'],
     'suite-planned': ['suite', 'name', 'file', 'tolerates_collapse', 'skips_fail'],
     'fixture-planned': ['fixture', 'suite', 'name'],
@@ -145,7 +120,19 @@ export const REQUIRED_FIELDS: { [Type in keyof Events]: (keyof Events[Type] & st
     'stack-dumped': ['source', 'text'],
     'run-finished': ['interrupted'],
     'runner-died': ['reason'],
-};
+} as const satisfies Record<string, (keyof Fields)[]>;
+
+type EventType = keyof typeof REQUIRED_FIELDS;
+type FieldsOf<Type extends EventType> = Pick<Fields, (typeof REQUIRED_FIELDS)[Type][number]>;
+
+/** An event; `at` is in microseconds since the run started. */
+export type RunEvent = {
+    [Type in EventType]: { type: Type; at: number } & (Type extends keyof Exceptions
+        ? Omit<FieldsOf<Type>, keyof Exceptions[Type]> & Exceptions[Type]
+        : FieldsOf<Type>);
+}[EventType];
+
+export type EventOf<Type extends EventType> = Extract<RunEvent, { type: Type }>;
 
 /** Parses a line of the stream; returns nothing for other text and unknown events. */
 export function parseEvent(line: string): RunEvent | undefined {

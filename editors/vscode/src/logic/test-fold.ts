@@ -3,7 +3,7 @@
 import type { EventOf, Measurement, Message, RunEvent, Verdict } from './events';
 import type { Location } from './list';
 import type { Problem, Target, Update } from './updates';
-import { isBad, judge, outcomeOf } from './verdict';
+import { isBad, judge, type Outcome, outcomeOf } from './verdict';
 
 interface Case {
     target: Target;
@@ -191,10 +191,7 @@ export class TestFold {
         return { kind: 'output', target, text, ...located(location) };
     }
 
-    private finished(
-        outcome: 'passed' | 'failed' | 'errored' | 'skipped',
-        problems: Problem[],
-    ): Update {
+    private finished(outcome: Outcome, problems: Problem[]): Update {
         this.isOpen = false;
         const durationMs = this.durationUs / 1000;
         return { kind: 'finished', target: this.target, outcome, problems, durationMs };

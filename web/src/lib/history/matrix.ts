@@ -4,7 +4,7 @@ import type { HistoryMatrix, MatrixRun } from '../../generated/api';
 import type { Verdict } from '../event';
 import type { Selection } from './query';
 import { testName } from './query';
-import { matrixPage } from './requests';
+import { ask } from './requests';
 
 /** The letters of results (spec/web.md); `P` passed after a retry. */
 export const LETTERS: Readonly<Record<string, Verdict>> = {
@@ -51,7 +51,8 @@ export async function loadMatrix(
     let matrix: Matrix | null = null;
     for (let after: number | undefined = 0; after !== undefined;) {
         const limit = matrix === null ? FIRST_PAGE : PAGE;
-        const page: HistoryMatrix = await matrixPage(selection, { after, limit }, signal);
+        const query = { ...selection, after, limit };
+        const page: HistoryMatrix = await ask('matrix', query, signal);
         if (matrix !== null && !hasSameRuns(matrix.runs, page.runs)) {
             [matrix, after] = [null, 0];
             continue;

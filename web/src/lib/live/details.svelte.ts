@@ -1,11 +1,19 @@
 // Loads the details of one attempt of a test, one start of a fixture or one run of a hook,
 // and keeps them up to date while the run continues.
 
-import { get, path } from '../api';
+import { get, path, type Query } from '../api';
 import type { Asked, Cases, Questions, Said, Signal, Signals } from '../api-types';
 import type { Event } from '../event';
+import { Task } from '../task.svelte';
 import { CaseList } from '../record/cases';
-import { addToLists, append, emptyLists, LIST_NAMES, type ListName } from '../record/detail';
+import {
+    addToLists,
+    append,
+    emptyLists,
+    LIST_NAMES,
+    LIST_OF,
+    type ListName,
+} from '../record/detail';
 import type { LiveRun } from './run.svelte';
 
 export interface Subject {
@@ -30,31 +38,34 @@ const PAGE = 1000;
 /** Growing curves are reloaded after this time. */
 const SIGNALS_EVERY = 1000;
 
-type Page = { next?: number; omitted?: number } & { [list in ListName]?: Said[] };
+/** What is loaded. It stays when the server exits. */
+export class Content {
+    lists = emptyLists();
+    cases = new CaseList();
+    /** Lists with more pages on the server, and where they continue. */
+    more: Partial<Record<ListName | 'cases', number>> = {};
+    /** Numbers of entries that a report omits. */
+    omitted: Partial<Record<ListName, number>> = {};
+    /** The signals of a test. */
+    signals: readonly Signal[] = [];
+    /** The questions of a test to an operator. */
+    questions: readonly Asked[] = [];
+}
+
+type Page = Partial<Cases> & { [list in ListName]?: Said[] };
 
 export class Details {
-    /** Incremented with each change of the lists. */
+    /** Incremented with each change of the content. */
     version = $state(0);
     isLoading = $state(true);
     /** Whether all pages have been loaded. */
     isLoaded = $state(false);
-    problem: string | null = $state(null);
-    /** Lists with more pages on the server, and where they continue. */
-    more: Partial<Record<ListName, number>> = $state.raw({});
-    /** Numbers of entries that a report omits. */
-    omitted: Partial<Record<ListName, number>> = $state.raw({});
-    /** The signals of a test. */
-    signals: readonly Signal[] = $state.raw([]);
-    /** The questions of a test to an operator. */
-    questions: readonly Asked[] = $state.raw([]);
-    /** The cases of a test. */
-    cases = new CaseList();
-    /** Where the next page of cases starts, if there is one. */
-    nextCase: number | null = $state(null);
+    readonly task = new Task();
+    private all = new Content();
     private signalsDue: ReturnType<typeof setTimeout> | null = null;
-    private all = emptyLists();
     private waiting: Event[] | null = [];
     private latest: number;
+    private readonly key: string;
     private readonly closing = new AbortController();
     private readonly unwatch: () => void;
 
@@ -62,19 +73,27 @@ export class Details {
         private readonly run: LiveRun,
         readonly subject: Subject,
     ) {
+        const { kind, id, number } = subject;
+        this.key = `${kind}/${id}/${number}`;
         this.latest = this.known();
-        const source = `${subject.kind}:${subject.id}`;
         // Subscribe, then load: events in between are in both and are dropped once.
-        this.unwatch = run.watch(run.record.isOver ? [] : [source], (events) =>
+        this.unwatch = run.watch(run.record.isOver ? [] : [`${kind}:${id}`], (events) =>
             this.receive(events),
         );
         void this.load();
     }
 
-    get lists() {
+    /** The content, which changes in place. */
+    get content(): Content {
         // eslint-disable-next-line @typescript-eslint/no-unused-expressions
         this.version;
         return this.all;
+    }
+
+    /** The route of the whole log. */
+    get log(): (string | number)[] {
+        const { kind, id, number } = this.subject;
+        return ['runs', this.run.name, 'logs', `${kind}s`, id, number];
     }
 
     close(): void {
@@ -83,96 +102,56 @@ export class Details {
         this.unwatch();
     }
 
-    /** Loads the next page of a list. */
-    async loadMore(list: ListName): Promise<void> {
-        const after = this.more[list];
-        if (after === undefined) return;
-        await this.attempt(() => this.pages(list, after, 1));
-    }
-
-    /** Loads the next page of cases. */
-    async loadMoreCases(): Promise<void> {
-        const after = this.nextCase;
-        if (after === null) return;
-        await this.attempt(() => this.casePages(after, 1));
-    }
-
-    private async casePages(from: number | undefined, most: number): Promise<void> {
-        const { id, number } = this.subject;
-        const route = ['runs', this.run.name, 'tests', id, 'attempts', number, 'cases'];
-        let after = from;
-        for (let page = 0; page < most; page += 1) {
-            const query = path(route, { after, limit: PAGE });
-            const { cases, next, omitted, not_run } = await get<Cases>(query, this.closing.signal);
-            this.cases.load(cases, not_run, omitted);
-            after = next;
-            this.version += 1;
-            if (after === undefined) break;
-        }
-        this.nextCase = after ?? null;
-    }
-
-    private get key(): string {
-        const { kind, id, number } = this.subject;
-        return `${kind}/${id}/${number}`;
+    /** Loads the next page of a list; `null` without one. */
+    more(list: ListName | 'cases'): (() => Promise<unknown>) | null {
+        const after = this.content.more[list];
+        if (after === undefined) return null;
+        return () => this.attempt(() => this.pages(list, after, 1));
     }
 
     private async load(): Promise<void> {
+        const { kind } = this.subject;
         const loaded = await this.attempt(async () => {
-            const { kind } = this.subject;
+            const lists = [...LISTS[kind], ...(kind === 'test' ? (['cases'] as const) : [])];
             await Promise.all([
-                ...LISTS[kind].map((list) => this.pages(list, undefined, FIRST_PAGES)),
-                ...(kind === 'test'
-                    ? [
-                          this.loadSignals(),
-                          this.loadQuestions(),
-                          this.casePages(undefined, FIRST_PAGES),
-                      ]
-                    : []),
+                ...lists.map((list) => this.pages(list, undefined, FIRST_PAGES)),
+                ...(kind === 'test' ? [this.loadSignals(), this.loadQuestions()] : []),
             ]);
             const missed = this.waiting ?? [];
             this.waiting = null;
             missed.forEach((event) => this.add(event));
         });
         this.isLoading = false;
-        if (loaded) this.keep();
+        if (loaded) this.run.kept.set(this.key, this.all);
         else this.restore();
         this.isLoaded ||= loaded;
-    }
-
-    private keep(): void {
-        const { all: lists, more, signals, questions, cases } = this;
-        this.run.keep(this.key, { lists, more, signals, questions, cases });
     }
 
     /** Restores details that were loaded before. */
     private restore(): void {
         const kept = this.run.kept.get(this.key);
         if (kept === undefined || this.closing.signal.aborted) return;
-        this.all = kept.lists;
-        this.more = kept.more;
-        this.signals = kept.signals;
-        this.questions = kept.questions;
-        this.cases = kept.cases;
+        this.all = kept;
         this.isLoaded = true;
-        this.problem = null;
+        this.task.problem = null;
         this.version += 1;
     }
 
+    /** A part of the subject. */
+    private part<T>(name: string, query: Query = {}): Promise<T> {
+        const { kind, id, number } = this.subject;
+        const route = ['runs', this.run.name, `${kind}s`, id, PARTS[kind], number, name];
+        return get<T>(path(route, query), this.closing.signal);
+    }
+
     private async loadSignals(): Promise<void> {
-        const { id, number } = this.subject;
-        const route = ['runs', this.run.name, 'tests', id, 'attempts', number, 'series'];
-        this.signals = (await get<Signals>(path(route), this.closing.signal)).series;
-        const kept = this.run.kept.get(this.key);
-        if (kept !== undefined) kept.signals = this.signals;
+        this.all.signals = (await this.part<Signals>('series')).series;
+        this.version += 1;
     }
 
     private async loadQuestions(): Promise<void> {
-        const { id, number } = this.subject;
-        const route = ['runs', this.run.name, 'tests', id, 'attempts', number, 'questions'];
-        this.questions = (await get<Questions>(path(route), this.closing.signal)).questions;
-        const kept = this.run.kept.get(this.key);
-        if (kept !== undefined) kept.questions = this.questions;
+        this.all.questions = (await this.part<Questions>('questions')).questions;
+        this.version += 1;
     }
 
     private renewSignals(): void {
@@ -184,40 +163,36 @@ export class Details {
 
     /** Whether it succeeded. */
     private async attempt(work: () => Promise<void>): Promise<boolean> {
-        let isDone = false;
-        try {
-            await work();
-            this.problem = null;
-            isDone = true;
-        } catch (problem) {
-            if (this.closing.signal.aborted) return false;
-            this.problem = problem instanceof Error ? problem.message : String(problem);
-        }
+        const isDone = await this.task.run(work, this.closing.signal);
         this.version += 1;
         return isDone;
     }
 
-    private async pages(list: ListName, from: number | undefined, most: number): Promise<void> {
-        const { kind, id, number } = this.subject;
-        const route = ['runs', this.run.name, `${kind}s`, id, PARTS[kind], number, list];
+    private async pages(
+        list: ListName | 'cases',
+        from: number | undefined,
+        most: number,
+    ): Promise<void> {
         let after = from;
         for (let page = 0; page < most; page += 1) {
-            const answer = await get<Page>(
-                path(route, { after, limit: PAGE }),
-                this.closing.signal,
-            );
-            const entries = this.all[list] as Said[];
-            for (const entry of answer[list] ?? []) append(entries, entry);
-            if (answer.omitted !== undefined)
-                this.omitted = { ...this.omitted, [list]: answer.omitted };
+            const answer = await this.part<Page>(list, { after, limit: PAGE });
+            this.addPage(list, answer);
             after = answer.next;
             this.version += 1;
             if (after === undefined) break;
         }
-        const more = { ...this.more };
-        if (after === undefined) delete more[list];
-        else more[list] = after;
-        this.more = more;
+        if (after === undefined) delete this.all.more[list];
+        else this.all.more[list] = after;
+        this.version += 1;
+    }
+
+    private addPage(list: ListName | 'cases', page: Page): void {
+        if (list === 'cases') {
+            this.all.cases.load(page.cases ?? [], page.not_run, page.omitted);
+            return;
+        }
+        for (const entry of page[list] ?? []) append(this.all.lists[list] as Said[], entry);
+        if (page.omitted !== undefined) this.all.omitted[list] = page.omitted;
     }
 
     private receive(events: Event[]): void {
@@ -250,11 +225,11 @@ export class Details {
     }
 
     private add(event: Event): void {
-        this.cases.apply(event);
-        const list = listOf(event);
+        const { cases, lists, more } = this.all;
+        cases.apply(event);
+        const list = LIST_OF[event.type];
         // Appending to an incomplete list would leave a gap.
-        if (list !== null && this.more[list] === undefined)
-            addToLists(this.all, event, this.run.name);
+        if (list !== undefined && more[list] === undefined) addToLists(lists, event, this.run.name);
     }
 
     private known(): number {
@@ -268,21 +243,4 @@ export class Details {
 
 function isOfQuestion({ type }: Event): boolean {
     return type === 'question-asked' || type === 'question-closed';
-}
-
-function listOf(event: Event): ListName | null {
-    switch (event.type) {
-        case 'message':
-            return 'messages';
-        case 'measured':
-            return 'measurements';
-        case 'attached':
-            return 'attachments';
-        case 'stack-dumped':
-            return 'stacks';
-        case 'output':
-            return 'output';
-        default:
-            return null;
-    }
 }

@@ -4,6 +4,7 @@
 import { ApiError, snapshot } from '../api';
 import type { RunStateName, Snapshot } from '../api-types';
 import type { Event } from '../event';
+import { messageOf } from '../task.svelte';
 import { RunRecord } from '../record/record';
 import { followRun } from './shared-stream';
 import type { SseEvent } from './sse';
@@ -92,7 +93,7 @@ export class Feed {
             return 'over';
         }
         const status = problem instanceof ApiError ? problem.status : 0;
-        const reason = problem instanceof Error ? problem.message : String(problem);
+        const reason = messageOf(problem);
         if (status >= 400 && status < 500) {
             this.listener.connected({ kind: 'refused', status, reason });
             return 'over';
@@ -172,31 +173,25 @@ export class Feed {
     }
 
     /** Waits until the page is visible, or the feed is closed. */
-    private shown(): Promise<void> {
-        return new Promise((resolve) => {
-            const done = () => {
-                if (document.hidden && !this.closing.signal.aborted) return;
-                document.removeEventListener('visibilitychange', done);
-                this.closing.signal.removeEventListener('abort', done);
-                resolve();
-            };
-            document.addEventListener('visibilitychange', done);
-            this.closing.signal.addEventListener('abort', done);
-            done();
-        });
+    private async shown(): Promise<void> {
+        while (document.hidden && !this.closing.signal.aborted)
+            await this.oneOf([document, 'visibilitychange']);
     }
 
     private pause(milliseconds: number): Promise<void> {
+        return this.oneOf([window, 'online'], [AbortSignal.timeout(milliseconds), 'abort']);
+    }
+
+    /** Waits for one of these events, or until the feed is closed. */
+    private oneOf(...events: [EventTarget, string][]): Promise<void> {
+        const waiting = new AbortController();
         return new Promise((resolve) => {
             const done = () => {
-                clearTimeout(timer);
-                removeEventListener('online', done);
-                this.closing.signal.removeEventListener('abort', done);
+                waiting.abort();
                 resolve();
             };
-            const timer = setTimeout(done, milliseconds);
-            addEventListener('online', done);
-            this.closing.signal.addEventListener('abort', done);
+            for (const [target, type] of [...events, [this.closing.signal, 'abort'] as const])
+                target.addEventListener(type, done, { signal: waiting.signal });
         });
     }
 }

@@ -2,30 +2,22 @@
 // at most six connections to a server: with one stream per tab, the
 // seventh tab would never load.
 
-import type { SseEvent, StreamEnd } from './sse';
+import type { SseEvent, StreamEnd, StreamOptions } from './sse';
 
-/** A follower of a run. */
-export interface Subscriber {
-    /** The number of the next event that it needs. */
-    from: number;
-    /** The sources whose messages and output it needs: `test:3`. */
-    details: readonly string[];
-    opened: () => void;
-    received: (events: SseEvent[]) => void;
-    ended: (end: StreamEnd) => void;
-}
+export type { StreamOptions };
 
 /** The parameters of a stream. */
 export interface Request {
     run: string;
+    /** The number of the next event that is needed. */
     from: number;
+    /** The sources whose messages and output are needed: `test:3`. */
     details: readonly string[];
 }
 
-export interface StreamOptions {
-    signal: AbortSignal;
-    opened: () => void;
-    received: (events: SseEvent[]) => void;
+/** A follower of a run. */
+export interface Subscriber extends Omit<Request, 'run'>, Omit<StreamOptions, 'signal'> {
+    ended: (end: StreamEnd) => void;
 }
 
 export type Open = (request: Request, options: StreamOptions) => Promise<StreamEnd>;

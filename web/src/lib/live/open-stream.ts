@@ -7,8 +7,6 @@ import { follow, type StreamEnd } from './sse';
 export function openStream(request: Request, options: StreamOptions): Promise<StreamEnd> {
     const { run, from } = request;
     const details = request.details.length === 0 ? 'none' : request.details.join(',');
-    return follow(address(['runs', run, 'events'], { from, details }), {
-        ...options,
-        lastEventId: from === 0 ? null : from - 1,
-    });
+    const url = address(['runs', run, 'events'], { from, details });
+    return follow(url, from === 0 ? null : from - 1, options);
 }

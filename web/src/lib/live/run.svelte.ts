@@ -5,21 +5,11 @@
 
 import { flushSync } from 'svelte';
 import * as api from '../api';
-import type { Asked, Signal } from '../api-types';
 import type { Event } from '../event';
-import type { CaseList } from '../record/cases';
-import type { ListName, Lists } from '../record/detail';
+import { Recent } from '../recent';
 import { RunRecord } from '../record/record';
+import type { Content } from './details.svelte';
 import { Feed, type Connection } from './feed';
-
-/** The loaded details of one attempt, start or run. */
-export interface Kept {
-    lists: Lists;
-    more: Partial<Record<ListName, number>>;
-    signals: readonly Signal[];
-    questions: readonly Asked[];
-    cases: CaseList;
-}
 
 /** Maximum number of details that are kept. */
 const KEPT = 30;
@@ -51,7 +41,7 @@ export class LiveRun {
     /** Incremented with each new record: loaded details are outdated. */
     generation = $state(0);
     /** Loaded details of attempts, starts and hook runs: they stay when the server exits. */
-    readonly kept = new Map<string, Kept>();
+    readonly kept = new Recent<Content>(KEPT);
     private readonly feed: Feed;
     private readonly listeners = new Set<DetailListener>();
     private readonly watched = new Map<symbol, string[]>();
@@ -89,16 +79,6 @@ export class LiveRun {
     close(): void {
         clearInterval(this.timer);
         this.feed.close();
-    }
-
-    /** Keeps loaded details; drops the least recently used ones. */
-    keep(key: string, kept: Kept): void {
-        this.kept.delete(key);
-        this.kept.set(key, kept);
-        for (const old of this.kept.keys()) {
-            if (this.kept.size <= KEPT) break;
-            this.kept.delete(old);
-        }
     }
 
     private tick(): void {

@@ -36,8 +36,7 @@ class Streams {
             if (options.signal.aborted) return end({ lost: true });
             options.signal.addEventListener('abort', abort);
             this.open.set(id, { options, end });
-            const { run, from, details } = request;
-            this.send({ kind: 'open', id, run, from, details: [...details] });
+            this.send({ kind: 'open', id, ...request });
         });
     }
 

@@ -54,10 +54,8 @@ export class SseParser {
 /** How a stream ended, if it was not aborted. */
 export type StreamEnd = { status: number } | { lost: true };
 
-interface Options {
+export interface StreamOptions {
     signal: AbortSignal;
-    /** The last received event; `null` for the first connection. */
-    lastEventId: number | null;
     opened: () => void;
     received: (events: SseEvent[]) => void;
 }
@@ -65,9 +63,13 @@ interface Options {
 /** The server sends at least a comment each second. */
 const SILENCE_MS = 8000;
 
-/** Follows a stream until it ends or its connection is lost. */
-export async function follow(url: string, options: Options): Promise<StreamEnd> {
-    const { signal, lastEventId } = options;
+/** Follows a stream until it ends or its connection is lost. `lastEventId` is `null` for the first
+ *  connection. */
+export async function follow(
+    url: string,
+    lastEventId: number | null,
+    options: StreamOptions,
+): Promise<StreamEnd> {
     const silence = new AbortController();
     let timer = setTimeout(() => silence.abort(), SILENCE_MS);
     try {
@@ -76,7 +78,7 @@ export async function follow(url: string, options: Options): Promise<StreamEnd> 
         const response = await fetch(url, {
             headers: { Accept: 'text/event-stream', ...resume },
             cache: 'no-store',
-            signal: AbortSignal.any([signal, silence.signal]),
+            signal: AbortSignal.any([options.signal, silence.signal]),
         });
         if (response.status !== 200 || response.body === null) return { status: response.status };
         options.opened();

@@ -2,6 +2,7 @@
 
 import type { Case, Parameter } from '../api-types';
 import type { Event, Verdict } from '../event';
+import { present } from '../present';
 
 /** A case in the order of the tree, with the number of cases that contain it. */
 export interface CaseRow {
@@ -57,8 +58,7 @@ export class CaseList {
                     ...found,
                     verdict: event.verdict,
                     duration_us: event.duration_us ?? event.at - found.started,
-                    ...(event.carried ? { carried: true } : {}),
-                    ...(event.reason == null ? {} : { reason: event.reason }),
+                    ...present({ carried: event.carried || null, reason: event.reason }),
                 });
                 if (event.rerun) this.supersede(event.case);
                 break;
@@ -135,19 +135,16 @@ export class CaseList {
     }
 
     private started(event: Extract<Event, { type: 'case-started' }>): Case {
-        const { case: id, name, parent, parameters, tags, location, at } = event;
-        const earlier = event.earlier_attempts;
+        const { case: id, name, parent, parameters, tags, at } = event;
+        const location = event.location as Case['location'];
+        const earlier_attempts = event.earlier_attempts || null;
         const above = parent == null ? undefined : this.byId.get(parent);
         return {
             case: id,
             name,
             path: above === undefined ? name : `${above.path}/${name}`,
             started: at,
-            ...(parent == null ? {} : { parent }),
-            ...(earlier ? { earlier_attempts: earlier } : {}),
-            ...(parameters === undefined ? {} : { parameters }),
-            ...(tags === undefined ? {} : { tags }),
-            ...(location == null ? {} : { location: location as NonNullable<Case['location']> }),
+            ...present({ parent, earlier_attempts, parameters, tags, location }),
         };
     }
 }

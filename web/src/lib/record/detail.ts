@@ -11,6 +11,7 @@ import type {
 } from '../api-types';
 import { address } from '../api';
 import type { Event, Measurement } from '../event';
+import { present } from '../present';
 
 export interface Lists {
     messages: MessageEntry[];
@@ -21,13 +22,17 @@ export interface Lists {
 }
 
 export type ListName = keyof Lists;
-export const LIST_NAMES: readonly ListName[] = [
-    'messages',
-    'measurements',
-    'attachments',
-    'stacks',
-    'output',
-];
+
+/** The lists to which events add entries. */
+export const LIST_OF: { [type in Event['type']]?: ListName } = {
+    message: 'messages',
+    measured: 'measurements',
+    attached: 'attachments',
+    'stack-dumped': 'stacks',
+    output: 'output',
+};
+
+export const LIST_NAMES: readonly ListName[] = Object.values(LIST_OF);
 
 export function emptyLists(): Lists {
     return { messages: [], measurements: [], attachments: [], stacks: [], output: [] };
@@ -56,8 +61,7 @@ export function addToLists(lists: Lists, event: Event, run: string): void {
             break;
         case 'output': {
             const { stream, text, omitted_bytes } = event;
-            const gap = omitted_bytes === undefined ? {} : { omitted_bytes };
-            append(lists.output, { seq, at, stream, text, ...gap });
+            append(lists.output, { seq, at, stream, text, ...present({ omitted_bytes }) });
             break;
         }
     }

@@ -1,6 +1,6 @@
 // Applies events to a fixture; its life as spans and marks.
 
-import type { Fixture, ProvidedValue, Start } from '../api-types';
+import type { Fixture, ProvidedValue } from '../api-types';
 import type { Event, FixturePlanned, FixtureProvided } from '../event';
 
 /** A stretch of a fixture's life; `to` is `null` while it lasts. */
@@ -96,19 +96,15 @@ export function spans(fixture: Fixture): Span[] {
 
 /** The marks of a fixture's life. */
 export function marks(fixture: Fixture): Mark[] {
-    return fixture.starts.flatMap((start, index) => [
-        ...(index === 0 ? [] : [mark('restarted', start.starting, `start ${start.number}`)]),
-        ...(start.collapsed ? [mark('collapsed', start.collapsed.at, start.collapsed.reason)] : []),
-        ...(start.problem ? [mark('problem', endOf(start), start.problem)] : []),
-    ]);
-}
-
-function mark(kind: Mark['kind'], at: number, text: string): Mark {
-    return { kind, at, text };
-}
-
-function endOf(start: Start): number {
-    return start.stopped ?? start.stopping ?? start.starting;
+    return fixture.starts.flatMap(({ number, collapsed, problem, ...life }, index) => {
+        const found: Mark[] = [];
+        const end = life.stopped ?? life.stopping ?? life.starting;
+        if (index > 0)
+            found.push({ kind: 'restarted', at: life.starting, text: `start ${number}` });
+        if (collapsed) found.push({ kind: 'collapsed', at: collapsed.at, text: collapsed.reason });
+        if (problem) found.push({ kind: 'problem', at: end, text: problem });
+        return found;
+    });
 }
 
 /** The reasons why the suite is not green. */

@@ -2,6 +2,7 @@
 
 import type { Hook } from '../api-types';
 import type { Event, HookPlanned } from '../event';
+import { present } from '../present';
 
 export function plannedHook(plan: HookPlanned): Hook {
     return { id: plan.hook, suite: plan.suite, name: plan.name, on: plan.on, runs: [] };
@@ -11,10 +12,9 @@ export function plannedHook(plan: HookPlanned): Hook {
 export function applyToHook(hook: Hook, event: Event): void {
     if (event.type === 'hook-started') {
         const { trigger, reason, test, at } = event;
-        const about = test == null ? {} : { test };
         // Its output is loaded on demand.
         const run = { number: hook.runs.length + 1, started: at, trigger, reason, output: '' };
-        hook.runs.push({ ...run, ...about });
+        hook.runs.push({ ...run, ...present({ test }) });
     } else if (event.type === 'hook-finished') {
         const run = hook.runs.at(-1);
         if (run === undefined) return;

@@ -14,31 +14,29 @@ import type {
     Totals,
 } from '../api-types';
 import { VERDICTS, type Event, type SuitePrepared, type Verdict } from '../event';
+import { present } from '../present';
 import { applyToFixture, fixtureProblems, plannedFixture } from './fixture';
 import { applyToHook, hookProblems, plannedHook } from './hook';
 import { applyToTest, plannedTest, testState } from './test';
 
 export class RunRecord {
+    readonly info: RunInfo;
+    readonly suites: readonly Suite[];
+    readonly fixtures: readonly Fixture[];
+    readonly hooks: readonly Hook[];
+    readonly tests: readonly Test[];
     /** The run's `--no-skips`; a snapshot has it in its suites. */
     private noSkips = false;
 
-    constructor(private readonly data: Snapshot = emptySnapshot()) {}
+    /** The parts of the data are never replaced. */
+    constructor(private readonly data: Snapshot = emptySnapshot()) {
+        this.info = data.info;
+        this.suites = data.suites;
+        this.fixtures = data.fixtures;
+        this.hooks = data.hooks;
+        this.tests = data.tests;
+    }
 
-    get info(): RunInfo {
-        return this.data.info;
-    }
-    get suites(): readonly Suite[] {
-        return this.data.suites;
-    }
-    get fixtures(): readonly Fixture[] {
-        return this.data.fixtures;
-    }
-    get hooks(): readonly Hook[] {
-        return this.data.hooks;
-    }
-    get tests(): readonly Test[] {
-        return this.data.tests;
-    }
     get warnings() {
         return this.data.warnings;
     }
@@ -94,6 +92,7 @@ export class RunRecord {
 
     private applyToRun(event: Event): void {
         const { data } = this;
+        const suite = 'suite' in event ? data.suites[event.suite] : undefined;
         switch (event.type) {
             case 'run-started':
                 this.noSkips = event.manifest?.no_skips === true;
@@ -111,11 +110,11 @@ export class RunRecord {
                 break;
             case 'fixture-planned':
                 data.fixtures[event.fixture] = plannedFixture(event);
-                data.suites[event.suite]?.fixtures.push(event.fixture);
+                suite?.fixtures.push(event.fixture);
                 break;
             case 'hook-planned':
                 data.hooks[event.hook] = plannedHook(event);
-                data.suites[event.suite]?.hooks.push(event.hook);
+                suite?.hooks.push(event.hook);
                 break;
             case 'test-planned':
                 data.tests[event.test] = plannedTest(event);
@@ -124,21 +123,13 @@ export class RunRecord {
                 data.warnings.push(event.diagnostic);
                 break;
             case 'suite-started':
-                Object.assign(data.suites[event.suite] ?? {}, {
-                    state: 'running',
-                    started: event.at,
-                });
+                Object.assign(suite ?? {}, { state: 'running', started: event.at });
                 break;
-            case 'suite-prepared': {
-                const suite = data.suites[event.suite];
+            case 'suite-prepared':
                 if (suite !== undefined) suite.prepared ??= preparedOf(event);
                 break;
-            }
             case 'suite-finished':
-                Object.assign(data.suites[event.suite] ?? {}, {
-                    state: 'finished',
-                    finished: event.at,
-                });
+                Object.assign(suite ?? {}, { state: 'finished', finished: event.at });
                 break;
             case 'run-finished':
                 data.info.state = event.interrupted == null ? 'finished' : 'interrupted';
@@ -175,13 +166,20 @@ export class RunRecord {
         return totals;
     }
 
+    fixturesOf(suite: Suite): Fixture[] {
+        return suite.fixtures.flatMap((id) => this.fixtures[id] ?? []);
+    }
+
+    hooksOf(suite: Suite): Hook[] {
+        return suite.hooks.flatMap((id) => this.hooks[id] ?? []);
+    }
+
     /** The problems of a suite apart from its tests. */
     suiteProblems(suite: Suite): string[] {
-        const fixtures = suite.fixtures.flatMap((id) => this.fixtures[id] ?? []);
-        const hooks = suite.hooks.flatMap((id) => this.hooks[id] ?? []);
+        const tolerates = suite.tolerates_collapse === true;
         return [
-            ...fixtures.flatMap((each) => fixtureProblems(each, suite.tolerates_collapse === true)),
-            ...hooks.flatMap((each) => hookProblems(each, this.isOver)),
+            ...this.fixturesOf(suite).flatMap((each) => fixtureProblems(each, tolerates)),
+            ...this.hooksOf(suite).flatMap((each) => hookProblems(each, this.isOver)),
         ];
     }
 
@@ -203,8 +201,10 @@ function plannedSuite(plan: Extract<Event, { type: 'suite-planned' }>, noSkips: 
         file: plan.file ?? '',
         description: plan.description ?? '',
         environment: plan.environment ?? '',
-        ...(plan.tolerates_collapse ? { tolerates_collapse: true } : {}),
-        ...(plan.skips_fail || noSkips ? { skips_fail: true } : {}),
+        ...present({
+            tolerates_collapse: plan.tolerates_collapse || null,
+            skips_fail: plan.skips_fail || noSkips || null,
+        }),
         state: 'pending',
         totals: noTotals(),
         problems: [],
@@ -219,9 +219,7 @@ function preparedOf(event: Extract<Event, { type: 'suite-prepared' }>): SuitePre
     return {
         suite,
         join_command,
-        ...(network == null ? {} : { network }),
-        ...(ports === undefined ? {} : { ports }),
-        ...(variables === undefined ? {} : { variables }),
+        ...present({ network, ports, variables }),
     };
 }
 

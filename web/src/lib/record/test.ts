@@ -3,46 +3,32 @@
 
 import type { AttemptRow, Suite, Test } from '../api-types';
 import type { Event, TestPlanned, TestState, Verdict } from '../event';
+import { present } from '../present';
 import { askedIn } from '../questions';
 import { isGreenVerdict, significanceOf } from '../known-failure';
 
-const NO_COUNTS = {
-    messages: 0,
-    failures: 0,
-    measurements: 0,
-    violations: 0,
-    attachments: 0,
-    output_bytes: 0,
-};
-
 export function plannedTest(plan: TestPlanned): Test {
-    const {
-        test,
-        suite,
-        name,
-        plugin_type,
-        plugin,
-        repetitions,
-        timed,
-        tags,
-        parameters,
-        expected,
-    } = plan;
+    const { timed, tags, parameters, expected } = plan;
     return {
-        id: test,
-        suite,
-        name,
-        plugin_type,
-        plugin,
-        repetitions,
-        ...(timed === true ? { timed } : {}),
-        ...(tags === undefined ? {} : { tags }),
-        ...(parameters === undefined ? {} : { parameters }),
-        ...(expected == null ? {} : { expected: expected as NonNullable<Test['expected']> }),
+        id: plan.test,
+        suite: plan.suite,
+        name: plan.name,
+        plugin_type: plan.plugin_type,
+        plugin: plan.plugin,
+        repetitions: plan.repetitions,
+        ...present({ timed: timed || null, tags, parameters }),
+        ...present({ expected: expected as Test['expected'] }),
         state: 'pending',
         duration_us: 0,
         attempts: [],
-        counts: { ...NO_COUNTS },
+        counts: {
+            messages: 0,
+            failures: 0,
+            measurements: 0,
+            violations: 0,
+            attachments: 0,
+            output_bytes: 0,
+        },
     };
 }
 

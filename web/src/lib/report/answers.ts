@@ -1,8 +1,9 @@
 // Responds to the page's requests from the data of a report, as the server does.
 
-import { ApiError, type RunPage, type Source } from '../api';
-import type { ApiRoot, Asked, Cases, Signal, Snapshot } from '../api-types';
+import { ApiError, type Source } from '../api';
+import type { ApiRoot, Asked, Cases, RunList, Signal, Snapshot } from '../api-types';
 import { LIST_NAMES, type ListName } from '../record/detail';
+import { present } from '../present';
 import type { Data } from './embedded';
 
 interface Overview {
@@ -66,7 +67,7 @@ export class Answers {
         };
     }
 
-    private runs(): RunPage {
+    private runs(): RunList {
         return { runs: [this.overview.snapshot.info] };
     }
 
@@ -115,8 +116,7 @@ export class Answers {
 function listOf(details: Details, name: string | undefined): unknown {
     const list = LIST_NAMES.find((known) => known === name);
     if (list === undefined) return undefined;
-    const omitted = details.omitted?.[list];
-    return { [list]: details[list] ?? [], ...(omitted === undefined ? {} : { omitted }) };
+    return { [list]: details[list] ?? [], ...present({ omitted: details.omitted?.[list] }) };
 }
 
 /** The points of a signal in the window of the query. */

@@ -1,6 +1,8 @@
 // The data in a report: chunks of compressed JSON, each of which is read when it is needed
 // (spec/reports.md).
 
+import { Recent } from '../recent';
+
 /** The number of chunks that stay in memory, decoded. */
 const KEPT = 16;
 
@@ -10,19 +12,14 @@ export interface Data {
 }
 
 export class EmbeddedData implements Data {
-    private readonly decoded = new Map<string, Promise<unknown>>();
+    private readonly decoded = new Recent<Promise<unknown>>(KEPT);
 
     constructor(private readonly document: Document) {}
 
     readBlock<T>(name: string): Promise<T> {
         const block = this.decoded.get(name) ?? this.decode(name);
-        // The one used last is the last.
-        this.decoded.delete(name);
+        // A block that is used again is kept longer.
         this.decoded.set(name, block);
-        for (const old of this.decoded.keys()) {
-            if (this.decoded.size <= KEPT) break;
-            this.decoded.delete(old);
-        }
         return block as Promise<T>;
     }
 
