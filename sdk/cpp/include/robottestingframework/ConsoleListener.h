@@ -7,7 +7,11 @@
 #include <iostream>
 #include <string>
 
+#if defined(_WIN32)
+#include <io.h>
+#else
 #include <unistd.h>
+#endif
 
 #include "TestListener.h"
 #include "internal/Lines.h"
@@ -55,7 +59,12 @@ private:
     static bool is_coloured()
     {
         const char *const no = std::getenv("NO_COLOR");
-        return isatty(1) != 0 && (no == nullptr || *no == '\0');
+#if defined(_WIN32)
+        const bool terminal = _isatty(1) != 0;
+#else
+        const bool terminal = isatty(1) != 0;
+#endif
+        return terminal && (no == nullptr || *no == '\0');
     }
 
     std::string coloured(const char *colour, const std::string &text) const

@@ -5,7 +5,11 @@
 
 #include <string>
 
+#if defined(_WIN32)
+#include <windows.h>
+#else
 #include <dlfcn.h>
+#endif
 
 namespace shlibpp {
 
@@ -23,21 +27,38 @@ public:
     {
         close();
         error_.clear();
+#if defined(_WIN32)
+        handle_ = reinterpret_cast<void *>(LoadLibraryA(filename));
+        if (handle_ == nullptr) {
+            error_ = "error " + std::to_string(GetLastError());
+        }
+#else
         handle_ = dlopen(filename, RTLD_NOW | RTLD_LOCAL);
         if (handle_ == nullptr) {
             keep_error();
         }
+#endif
         return handle_ != nullptr;
     }
 
     bool close()
     {
-        const bool closed = handle_ == nullptr || dlclose(handle_) == 0;
+        bool closed = true;
+        if (handle_ != nullptr) {
+#if defined(_WIN32)
+            closed = FreeLibrary(reinterpret_cast<HMODULE>(handle_)) != 0;
+#else
+            closed = dlclose(handle_) == 0;
+#endif
+        }
         handle_ = nullptr;
         return closed;
     }
 
-    std::string error() { return error_; }
+    std::string error()
+    {
+        return error_;
+    }
 
     // Null if it does not exist.
     void *getSymbol(const char *symbolName)
@@ -45,21 +66,31 @@ public:
         if (handle_ == nullptr) {
             return nullptr;
         }
+#if defined(_WIN32)
+        return reinterpret_cast<void *>(
+            GetProcAddress(reinterpret_cast<HMODULE>(handle_), symbolName));
+#else
         void *const symbol = dlsym(handle_, symbolName);
         if (symbol == nullptr) {
             keep_error();
         }
         return symbol;
+#endif
     }
 
-    bool isValid() const { return handle_ != nullptr; }
+    bool isValid() const
+    {
+        return handle_ != nullptr;
+    }
 
 private:
+#if !defined(_WIN32)
     void keep_error()
     {
         const char *const words = dlerror();
         error_ = words == nullptr ? "" : words;
     }
+#endif
 
     void *handle_ = nullptr;
     std::string error_;

@@ -183,10 +183,14 @@ private:
         timeval patience = timeval();
         patience.tv_sec = patience_ms / 1000;
         setsockopt(client, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+#if defined(MSG_NOSIGNAL)
+        const int flags = MSG_NOSIGNAL;
+#else
+        const int flags = 0;
+#endif
         std::size_t sent = 0;
         while (sent < text.size()) {
-            const ssize_t count =
-                ::send(client, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
+            const ssize_t count = ::send(client, text.data() + sent, text.size() - sent, flags);
             if (count <= 0) {
                 return;
             }
