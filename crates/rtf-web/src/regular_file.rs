@@ -6,12 +6,10 @@
 
 use std::fs::File;
 use std::io;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Component, Path};
 
 use rustix::fd::{AsFd, OwnedFd};
-use rustix::fs::{
-    AtFlags, CWD, FileType, Mode, OFlags, ResolveFlags, fstat, openat, openat2, statat,
-};
+use rustix::fs::{AtFlags, CWD, FileType, Mode, OFlags, fstat, openat, statat};
 
 const DIRECTORY: OFlags = OFlags::RDONLY.union(OFlags::DIRECTORY).union(OFlags::CLOEXEC);
 /// Does not wait for the writer of a FIFO, should the file have become one.
@@ -60,10 +58,17 @@ fn parent(root: OwnedFd, parents: &[&Path]) -> io::Result<OwnedFd> {
     }
 }
 
+#[cfg(target_os = "linux")]
 fn resolve(root: impl AsFd, parents: &[&Path]) -> rustix::io::Result<OwnedFd> {
-    let path: PathBuf = parents.iter().collect();
+    use rustix::fs::{ResolveFlags, openat2};
+    let path: std::path::PathBuf = parents.iter().collect();
     let how = ResolveFlags::BENEATH | ResolveFlags::NO_SYMLINKS | ResolveFlags::NO_MAGICLINKS;
     openat2(root, &path, DIRECTORY, Mode::empty(), how)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn resolve(_root: impl AsFd, _parents: &[&Path]) -> rustix::io::Result<OwnedFd> {
+    Err(rustix::io::Errno::NOSYS)
 }
 
 /// Goes down part by part, and follows no link.

@@ -1,7 +1,6 @@
 //! A secret that is compared in constant time.
 
 use std::io::Read;
-use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
@@ -83,8 +82,15 @@ impl Secret {
 
 /// Whether others than the file's owner can read it. A pipe, as of a shell's
 /// `<(…)`, belongs to this process alone.
+#[cfg(unix)]
 fn others_may_read(file: &std::fs::Metadata) -> bool {
+    use std::os::unix::fs::PermissionsExt;
     file.is_file() && file.permissions().mode() & 0o077 != 0
+}
+
+#[cfg(not(unix))]
+fn others_may_read(_file: &std::fs::Metadata) -> bool {
+    false
 }
 
 impl std::fmt::Debug for Secret {
