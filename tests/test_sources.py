@@ -13,6 +13,7 @@ PYTHON = """
 """.split()
 UNTYPED = (
     "tests/colcon/workspace",
+    "tests/fixtures/yarp/plugins/",
     "tests/frameworks/",
     "tests/import/workspace",
     "tests/install/",

@@ -25,6 +25,7 @@ mod shared_host;
 mod suite_clock;
 mod unix;
 mod writer;
+mod yarp;
 
 pub use cases::CaseEnd;
 pub use check::{CheckedFile, check, files_to_check};

@@ -9,6 +9,7 @@ use rustix::process::Pid;
 use crate::decode::{INVALID_REQUEST, Incoming};
 use crate::reader::Reader;
 use crate::shared_host::SharedHost;
+use crate::yarp::YarpNetwork;
 use crate::{HostPlugin, PluginKind, Session, Step, StepEnd, TestNotification, unix};
 
 /// Serves the runner until its last answer or the end of the channel. The caller then
@@ -21,8 +22,15 @@ use crate::{HostPlugin, PluginKind, Session, Step, StepEnd, TestNotification, un
 pub fn serve(session: &Session, host: impl HostPlugin) -> std::io::Result<()> {
     let reader = Reader::new(session, &host);
     let process = rustix::process::getpid();
-    let mut server =
-        RequestLoop { session, host, process, initialized: false, loaded: None, shared: None };
+    let mut server = RequestLoop {
+        session,
+        host,
+        process,
+        initialized: false,
+        loaded: None,
+        shared: None,
+        yarp: None,
+    };
     let Some((reader, first)) = server.before_plugins(reader) else {
         return Ok(());
     };
@@ -43,6 +51,8 @@ struct RequestLoop<'a, H> {
     loaded: Option<PluginKind>,
     /// Set by the first test that may share the host with the next one.
     shared: Option<SharedHost>,
+    /// The network of the loaded plug-in, if it uses YARP and does not make one.
+    yarp: Option<YarpNetwork>,
 }
 
 impl<H: HostPlugin> RequestLoop<'_, H> {
@@ -229,6 +239,7 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
         match loaded {
             Ok(()) => {
                 self.loaded = Some(kind);
+                self.yarp = YarpNetwork::init();
                 true
             }
             Err(error) => {
@@ -243,6 +254,9 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
         self.step(Step::TearDown);
         let end = self.host.unload();
         self.record_end(end, "unloading", Outcome::Error);
+        if let Some(yarp) = self.yarp.take() {
+            yarp.finish();
+        }
         self.loaded = None;
     }
 

@@ -1,10 +1,11 @@
-//! `<suite>`, the root element.
+//! `<suite>`, the root element; `<suit>` in 1.x.
 
 use roxmltree::Node;
 use rtf_model::Diagnostic;
 
 use super::reader::ElementReader;
 use super::schema::{self, check};
+use super::source_file::SUITE_ROOTS;
 use super::test::{self, TestDefaults};
 use super::{
     DeclaredIsolation, DeclaredMiddleware, DeclaredSuite, ReferenceUser, SourceText, Spanned,
@@ -20,7 +21,7 @@ use super::{
 pub fn parse(source: &SourceText, problems: &mut Vec<Diagnostic>) -> Option<DeclaredSuite> {
     read_document(source, problems, |reader, root| {
         let name = root.tag_name();
-        if name.name() != "suite" || name.namespace().is_some() {
+        if !SUITE_ROOTS.contains(&name.name()) || name.namespace().is_some() {
             reader.report(not_a_suite(source, root));
             return None;
         }
@@ -31,7 +32,7 @@ pub fn parse(source: &SourceText, problems: &mut Vec<Diagnostic>) -> Option<Decl
 fn not_a_suite(source: &SourceText, root: Node<'_, '_>) -> Diagnostic {
     let name = root.tag_name();
     let message = match name.namespace() {
-        Some(_) if name.name() == "suite" => {
+        Some(_) if SUITE_ROOTS.contains(&name.name()) => {
             "a suite file has no XML namespace; remove the `xmlns`".to_owned()
         }
         _ => {

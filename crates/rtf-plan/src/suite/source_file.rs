@@ -17,10 +17,13 @@ const PREFIX_BYTES: u64 = 64 * 1024;
 
 const REPLAY_EXTENSION: &str = "replay.xml";
 
-/// Checks whether a file's first element is `<suite>`, even if the file is malformed.
+/// The names of a suite's first element: the present one, and that of 1.x.
+pub(super) const SUITE_ROOTS: [&str; 2] = ["suite", "suit"];
+
+/// Checks whether a file's first element is that of a suite, even if the file is malformed.
 #[must_use]
 pub fn is_suite_file(path: &Path) -> bool {
-    begins_with(path, "suite")
+    begins_with(path, &SUITE_ROOTS)
 }
 
 /// Returns the path of the suite that replays recordings of a suite: `arm.replay.xml` for
@@ -41,13 +44,15 @@ pub fn is_replay_suite(path: &Path) -> bool {
 /// Checks whether a file's first element is `<campaign>`, even if the file is malformed.
 #[must_use]
 pub fn is_campaign_file(path: &Path) -> bool {
-    begins_with(path, "campaign")
+    begins_with(path, &["campaign"])
 }
 
-fn begins_with(path: &Path, element: &str) -> bool {
+fn begins_with(path: &Path, elements: &[&str]) -> bool {
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(PREFIX_BYTES).read_to_end(&mut bytes));
-    read.is_ok() && prepass::root_name(&String::from_utf8_lossy(&bytes)) == Some(element)
+    let text = String::from_utf8_lossy(&bytes);
+    let root = read.ok().and_then(|_| prepass::root_name(&text));
+    root.is_some_and(|root| elements.contains(&root))
 }
 
 #[derive(Debug)]

@@ -22,11 +22,12 @@ pub struct Args {
     pub tests: Option<PathBuf>,
 
     /// Run one suite
-    #[arg(short, long, value_name = "FILE", allow_hyphen_values = true)]
+    // `--suit` and `--suits` in 1.x.
+    #[arg(short, long, alias = "suit", value_name = "FILE", allow_hyphen_values = true)]
     pub suite: Option<PathBuf>,
 
     /// Run the suites of a directory
-    #[arg(long, value_name = "DIR", allow_hyphen_values = true)]
+    #[arg(long, alias = "suits", value_name = "DIR", allow_hyphen_values = true)]
     pub suites: Option<PathBuf>,
 
     /// Write no result file and delete the results

@@ -197,6 +197,23 @@ fn folders_of_plug_ins_and_of_suites() {
 }
 
 #[test]
+fn suites_of_1_x() {
+    let folder = folder();
+    let suite =
+        folder.read("suites/arm.xml").replace("<suite", "<suit").replace("</suite>", "</suit>");
+    std::fs::create_dir(folder.path().join("first")).expect("a directory");
+    std::fs::write(folder.path().join("first/arm.xml"), suite).expect("a suite");
+    for arguments in [["--suit", "first/arm.xml"], ["--suits", "first"]] {
+        let finished = folder.testrunner(&arguments);
+        assert!(
+            finished.stdout.contains("Total number of test cases   : 2"),
+            "{}",
+            finished.stdout
+        );
+    }
+}
+
+#[test]
 fn plug_ins_run_before_suites() {
     let folder = folder();
     folder.testrunner(&["--suites", "suites", "-t", "Bad.lua", "-p", "x", "--tests", "more"]);

@@ -10,7 +10,7 @@ from rtf import _exceptions, _session
 from rtf._fixture import FixtureManager, Test
 from rtf._stop import Interrupted, StepEnded
 from rtf._test import TestCase
-from rtf.host import load
+from rtf.host import load, yarp_network
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
@@ -45,6 +45,7 @@ def run_test(session: Session) -> Answer:
         session.announce("tear-down", held=not has_tear_down)
         if has_tear_down:
             _tear_down(session, test)
+        yarp_network.finish()
     return _answer(session)
 
 
@@ -112,12 +113,16 @@ def tear_down_fixture(session: Session, fixture: FixtureManager | None) -> Answe
     """Tear a fixture down, if it was loaded."""
     if fixture is not None:
         _tear_down(session, fixture)
+        yarp_network.finish()
     return _answer(session)
 
 
 def _load(session: Session, base: type[load._P]) -> load._P | None:
     loaded = _guard(session, lambda: load.load(session.task.file, base))
-    return loaded[0] if loaded else None
+    if not loaded:
+        return None
+    yarp_network.init()
+    return loaded[0]
 
 
 def _step(session: Session, function: Callable[[], object], step: str) -> None:

@@ -17,8 +17,9 @@ module RTF
 
       # Runs the file and creates an object of its one class.
       def load(file, base)
+        file = File.expand_path(file) # as Ruby names it
         forget_previous(file)
-        directory = File.dirname(File.expand_path(file))
+        directory = File.dirname(file)
         $LOAD_PATH.unshift(directory) unless $LOAD_PATH.first == directory
         Predecessor.add_module
         Kernel.load(file)

@@ -1,6 +1,7 @@
 # frozen_string_literal: true
 
 require "rtf/host/load"
+require "rtf/host/yarp_network"
 require "rtf/session"
 
 module RTF
@@ -77,7 +78,9 @@ module RTF
       end
 
       def load(session, base)
-        guard(session) { Load.load(session.task.file, base) }
+        guard(session) { Load.load(session.task.file, base) }.tap do |plugin|
+          YarpNetwork.init if plugin
+        end
       end
 
       # Carries out a step and checks its result.
@@ -92,6 +95,7 @@ module RTF
       def tear_down(session, plugin)
         session.request.clear_stop
         guard(session) { plugin.tear_down }
+        YarpNetwork.finish
       end
 
       # Calls the plug-in and reports its exception. Only SystemExit propagates: the plug-in
