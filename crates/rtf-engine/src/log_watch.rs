@@ -242,8 +242,10 @@ fn value<'t>(pattern: &Regex, text: &'t str, end: LineEnd) -> Option<&'t str> {
 }
 
 /// The bytes without an incomplete character at the end.
-fn complete_characters(bytes: &[u8]) -> &[u8] {
-    let last = bytes.utf8_chunks().last().map_or(&[][..], |chunk| chunk.invalid());
+pub fn complete_characters(bytes: &[u8]) -> &[u8] {
+    // A character has up to four bytes.
+    let end = &bytes[bytes.len().saturating_sub(3)..];
+    let last = end.utf8_chunks().last().map_or(&[][..], |chunk| chunk.invalid());
     let is_cut = std::str::from_utf8(last).is_err_and(|error| error.error_len().is_none());
     &bytes[..bytes.len() - if is_cut { last.len() } else { 0 }]
 }

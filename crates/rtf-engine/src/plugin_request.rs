@@ -12,14 +12,6 @@ pub fn plugin(suite: &SuitePlan, name: &str, plan: &PluginPlan, repetition: u32)
         args: plan.args.clone(),
         environment: suite.settings.environment.clone(),
         repetition,
-        is_last: false,
-        end_marker: None,
-        attachments_dir: None,
-        cases: Vec::new(),
-        case_timeout_ms: None,
-        separate_cases: false,
-        fork_at_main: false,
-        parameters: Vec::new(),
-        fixture_values: Vec::new(),
+        ..Plugin::default()
     }
 }

@@ -9,7 +9,6 @@ use super::io::{
 };
 use super::kill_escalation::{KILL_WAIT, MAX_KILLS, SIGTERM, TERM_GRACE, killed_text};
 use super::output_capture::OutputCapture;
-use crate::fixture_values::FixtureValues;
 use crate::hook::{ASKED, HookJudgement, RUN_REQUEST, request, trigger_variables};
 use rtf_plan::plan::{HookBody, HookPlan, SuitePlan};
 
@@ -36,16 +35,12 @@ pub struct RunningHook<'p> {
 impl<'p> RunningHook<'p> {
     pub fn start(suite: &'p SuitePlan, triggered: TriggeredHook, cx: &mut Context<'_>) -> Self {
         let plan = &suite.hooks[triggered.index];
-        let (host, source) = (cx.next_host_id(), Source::Hook(plan.id));
+        let source = Source::Hook(plan.id);
         cx.emit(started_event(plan, &triggered));
-        let start = process_start(suite, plan, triggered, cx.values());
-        cx.push(Effect::Spawn { host, source, start });
-        if let HookBody::Plugin(body) = &plan.body {
-            let mut request = request(suite, &plan.name, body);
-            cx.values().extend_request(&mut request);
-            let request = Request::RunTest(request);
-            cx.send(host, Some(RUN_REQUEST), request);
-        }
+        let mut env = environment(suite, &plan.env, ("hook", &plan.name), cx.values());
+        let test = triggered.test.as_ref().map(|(_, name)| name.as_str());
+        env.extend(trigger_variables(triggered.trigger, &triggered.reason, test));
+        let host = start_body(suite, (source, &plan.name), &plan.body, env, cx);
         cx.set(Deadline::Hook, plan.timeout);
         let output = OutputCapture::new(source);
         let is_plugin = matches!(plan.body, HookBody::Plugin(_));
@@ -161,18 +156,27 @@ fn started_event(plan: &HookPlan, triggered: &TriggeredHook) -> EventKind {
     }
 }
 
-fn process_start(
+/// Starts the command or plug-in of a hook or reset.
+pub fn start_body(
     suite: &SuitePlan,
-    plan: &HookPlan,
-    triggered: TriggeredHook,
-    values: &FixtureValues,
-) -> StartRequest {
-    let what = match &plan.body {
-        HookBody::Plugin(plugin) => Program::Host(values.in_host(&plugin.host)),
-        HookBody::Command(command) => Program::Command(values.in_command(command)),
+    (source, name): (Source, &str),
+    body: &HookBody,
+    env: Vec<(String, String)>,
+    cx: &mut Context<'_>,
+) -> HostId {
+    let host = cx.next_host_id();
+    let (what, request) = match body {
+        HookBody::Plugin(plugin) => {
+            let mut request = request(suite, name, plugin);
+            cx.values().extend_request(&mut request);
+            (Program::Host(cx.values().in_host(&plugin.host)), Some(request))
+        }
+        HookBody::Command(command) => (Program::Command(cx.values().in_command(command)), None),
     };
-    let mut env = environment(suite, &plan.env, ("hook", &plan.name), values);
-    let test = triggered.test.as_ref().map(|(_, name)| name.as_str());
-    env.extend(trigger_variables(triggered.trigger, &triggered.reason, test));
-    StartRequest { what, env, folder: suite.folder.clone() }
+    let start = StartRequest { what, env, folder: suite.folder.clone() };
+    cx.push(Effect::Spawn { host, source, start });
+    if let Some(request) = request {
+        cx.send(host, Some(RUN_REQUEST), Request::RunTest(request));
+    }
+    host
 }

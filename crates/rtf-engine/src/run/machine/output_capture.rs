@@ -7,6 +7,7 @@ use rtf_model::{EventKind, FixtureProvided, Output, Source, Stream};
 
 use super::context::Context;
 use crate::fixture_values::FixtureValues;
+use crate::log_watch::complete_characters;
 
 /// How many bytes of each stream are reported as they come.
 pub const HEAD_BYTES: usize = 256 * 1024;
@@ -64,7 +65,7 @@ impl StreamCapture {
             return None;
         }
         self.partial.extend_from_slice(&bytes[..now]);
-        let mut complete = complete_len(&self.partial);
+        let mut complete = complete_characters(&self.partial).len();
         complete -= values.secret_start_len(&self.partial[..complete]);
         let rest = self.partial.split_off(complete);
         let text = std::mem::replace(&mut self.partial, rest);
@@ -111,22 +112,6 @@ impl StreamCapture {
             text: String::from_utf8_lossy(text).into_owned(),
         })
     }
-}
-
-/// The length up to an incomplete character at the end.
-fn complete_len(bytes: &[u8]) -> usize {
-    let start = bytes.len().saturating_sub(3);
-    for index in (start..bytes.len()).rev() {
-        let width = match bytes[index] {
-            0x80..=0xBF => continue,
-            0xC0..=0xDF => 2,
-            0xE0..=0xEF => 3,
-            0xF0..=0xF7 => 4,
-            _ => 1,
-        };
-        return if index + width > bytes.len() { index } else { bytes.len() };
-    }
-    bytes.len()
 }
 
 #[cfg(test)]
