@@ -40,17 +40,9 @@ const MARKS: [(&[u8], &str); 6] = [
     (b"boost_unit_test_framework", "boost"),
 ];
 
-/// How a test of another type is started.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Recognized {
-    kind: &'static str,
-    /// A program, or a Python file or directory.
-    subject: String,
-    args: Vec<String>,
-    /// The case that it selects: one of those that `gtest_discover_tests` has found.
-    case: Option<String>,
-    env: Vec<(String, String)>,
-}
+/// A test of another type without its name and its limits, and whether it is one case of many that
+/// `gtest_discover_tests`, for example, has found.
+type Recognized = (ImportedTest, bool);
 
 /// The tests of a suite: recognised ones first, then one with the remaining tests.
 pub fn tests(listed: &[ListedTest], build: &Path, config: Option<&str>) -> Vec<ImportedTest> {
@@ -62,11 +54,10 @@ pub fn tests(listed: &[ListedTest], build: &Path, config: Option<&str>) -> Vec<I
     let mut rest: Vec<&ListedTest> = Vec::new();
     for test in listed {
         let is_portable = is_portable(test, build) && !needed.contains(&test.name);
-        let Some(found) = is_portable.then(|| recognize(test)).flatten() else {
+        let Some((found, is_discovered)) = is_portable.then(|| recognize(test)).flatten() else {
             rest.push(test);
             continue;
         };
-        let is_discovered = found.case.is_some();
         let key = format!("{} {:?} {:?}", found.subject, found.args, found.env);
         if let (Some(&index), true) = (groups.get(&key), is_discovered) {
             imported[index].ctest_names.push(test.name.clone());
@@ -75,7 +66,7 @@ pub fn tests(listed: &[ListedTest], build: &Path, config: Option<&str>) -> Vec<I
         if is_discovered {
             groups.insert(key, imported.len());
         }
-        imported.push(import(test, found));
+        imported.push(import(test, found, is_discovered));
     }
     if !rest.is_empty() {
         imported.push(remaining(&rest, listed.len(), build, config));
@@ -83,25 +74,20 @@ pub fn tests(listed: &[ListedTest], build: &Path, config: Option<&str>) -> Vec<I
     imported
 }
 
-fn import(test: &ListedTest, found: Recognized) -> ImportedTest {
+fn import(test: &ListedTest, found: ImportedTest, is_discovered: bool) -> ImportedTest {
     let timeout = test.property("TIMEOUT").first().filter(|limit| *limit != "0").cloned();
-    let Recognized { kind, subject, args, case, env } = found;
-    let name = match case {
-        None => test.name.clone(),
-        Some(_) => Path::new(&subject).file_name().unwrap_or_default().to_string_lossy().into(),
+    let (timeout, case_timeout) = if is_discovered { (None, timeout) } else { (timeout, None) };
+    let name = match is_discovered {
+        true => Path::new(&found.subject).file_name().unwrap_or_default().to_string_lossy().into(),
+        false => test.name.clone(),
     };
-    let (timeout, case_timeout) = if case.is_some() { (None, timeout) } else { (timeout, None) };
     ImportedTest {
-        kind,
         name,
-        subject,
-        args,
         timeout,
         case_timeout,
         tags: test.property("LABELS").to_vec(),
-        env,
         ctest_names: vec![test.name.clone()],
-        ..ImportedTest::default()
+        ..found
     }
 }
 
@@ -192,7 +178,8 @@ fn launch_testing(args: &[String], env: Vec<(String, String)>) -> Option<Recogni
     let args: Vec<_> = kept.collect();
     let are_arguments = args.iter().all(|arg| arg.contains(":="));
     let kind = "launch_testing";
-    are_arguments.then_some(Recognized { kind, subject, args, case: None, env })
+    let test = ImportedTest { kind, subject, args, env, ..ImportedTest::default() };
+    are_arguments.then_some((test, false))
 }
 
 /// `python -m pytest PATH`, `pytest PATH`.
@@ -214,14 +201,15 @@ fn pytest(args: &[String], env: Vec<(String, String)>) -> Option<Recognized> {
     }
     let [subject] = paths.as_slice() else { return None };
     let subject = subject.clone();
-    Some(Recognized { kind: "pytest", subject, args: kept, case: None, env })
+    let test = ImportedTest { kind: "pytest", subject, args: kept, env, ..ImportedTest::default() };
+    Some((test, false))
 }
 
 /// A program that is linked with a framework.
 fn native(program: &str, args: &[String], env: Vec<(String, String)>) -> Option<Recognized> {
     let kind = kind_of(Path::new(program))?;
     let mut args: Vec<String> = args.to_vec();
-    let mut case = None;
+    let mut is_case = false;
     match kind {
         "gtest" => {
             args.retain(|arg| !arg.starts_with("--gtest_output="));
@@ -229,7 +217,8 @@ fn native(program: &str, args: &[String], env: Vec<(String, String)>) -> Option<
             let at = args.iter().position(|arg| arg.starts_with("--gtest_filter="));
             match at {
                 Some(at) if is_discovered => {
-                    case = args.remove(at).strip_prefix("--gtest_filter=").map(str::to_owned);
+                    args.remove(at);
+                    is_case = true;
                     args.retain(|arg| arg != "--gtest_also_run_disabled_tests");
                 }
                 // A filter of the user.
@@ -239,18 +228,20 @@ fn native(program: &str, args: &[String], env: Vec<(String, String)>) -> Option<
         }
         // `catch_discover_tests` passes the name of the test case first.
         "catch2" if args.first().is_some_and(|arg| !arg.starts_with('-')) => {
-            case = Some(args.remove(0));
+            args.remove(0);
+            is_case = true;
         }
         // `doctest_discover_tests`
         "doctest" => {
             if let Some(at) = args.iter().position(|arg| arg.starts_with("--test-case=")) {
-                case = args.remove(at).strip_prefix("--test-case=").map(str::to_owned);
+                args.remove(at);
+                is_case = true;
             }
         }
         _ => {}
     }
     let subject = program.to_owned();
-    Some(Recognized { kind, subject, args, case, env })
+    Some((ImportedTest { kind, subject, args, env, ..ImportedTest::default() }, is_case))
 }
 
 /// The framework of a program, by texts in it.

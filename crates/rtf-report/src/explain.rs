@@ -64,6 +64,12 @@ pub(crate) fn explain(attempt: &AttemptRecord, extent: Extent, sink: Sink<'_>) {
     }
 }
 
+/// Explains why an attempt did not pass, with its leaked processes.
+pub(crate) fn attempt(attempt: &AttemptRecord, extent: Extent, sink: Sink<'_>) {
+    explain(attempt, extent, sink);
+    left(&attempt.leaked, sink);
+}
+
 /// `fault drop-camera (stop) from 0.201 s to 0.702 s: stopped …`, in the time of the attempt.
 pub(crate) fn fault(attempt: &AttemptRecord, record: &FaultRecord) -> String {
     let FaultRecord { fault, .. } = record;
@@ -119,7 +125,8 @@ pub(crate) fn own_failures(attempt: &AttemptRecord) -> impl Iterator<Item = &Mes
     attempt.failures().filter(|failure| !is_in_case(attempt, failure.case))
 }
 
-fn is_in_case(attempt: &AttemptRecord, case: Option<CaseId>) -> bool {
+/// Whether the attempt has the case in which something was reported.
+pub(crate) fn is_in_case(attempt: &AttemptRecord, case: Option<CaseId>) -> bool {
     case.is_some_and(|case| attempt.cases.get(case).is_some())
 }
 

@@ -46,8 +46,7 @@ fn of_whole(record: &Record, test: &TestRecord, roots: &Roots<'_>) -> Finding {
     let about = record.full_name(test.plan.test);
     let mut lines = explain::lines(|sink| {
         if let Some(attempt) = test.decisive_attempt() {
-            explain::explain(attempt, EXTENT, sink);
-            explain::left(&attempt.leaked, sink);
+            explain::attempt(attempt, EXTENT, sink);
         }
     });
     if lines.is_empty() {

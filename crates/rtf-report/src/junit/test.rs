@@ -158,11 +158,7 @@ fn title(test: &TestRecord, attempt: &AttemptRecord) -> String {
 }
 
 fn explained(attempt: &AttemptRecord) -> String {
-    let lines = explain::lines(|sink| {
-        explain::explain(attempt, Extent::ALL, sink);
-        explain::left(&attempt.leaked, sink);
-    });
-    lines.join("\n")
+    explain::lines(|sink| explain::attempt(attempt, Extent::ALL, sink)).join("\n")
 }
 
 /// The last lines of the fixtures that are to blame.
@@ -185,8 +181,7 @@ fn properties(case: &mut TestCase, test: &TestRecord) {
         case.add_property(("tag", text(tag).as_str()));
     }
     let measurements = test.deciding_attempts().flat_map(|attempt| {
-        let is_own = |id| attempt.cases.get(id).is_none();
-        attempt.measurements.iter().filter(move |m| m.case.is_none_or(is_own))
+        attempt.measurements.iter().filter(|it| !explain::is_in_case(attempt, it.case))
     });
     for measurement in measurements.take(MEASUREMENTS) {
         add_measurement(case, measurement);
@@ -237,7 +232,7 @@ fn system_out(test: &TestRecord, folder: Option<&Path>) -> String {
         }
         let Some(folder) = folder else { continue };
         // The attachments of a case are in its own test case.
-        let is_kept = |a: &&Attachment| a.case.is_none_or(|id| attempt.cases.get(id).is_none());
+        let is_kept = |it: &&Attachment| !explain::is_in_case(attempt, it.case);
         for attachment in attempt.attachments.iter().filter(is_kept) {
             attach(&mut out, folder, attachment);
         }

@@ -6,7 +6,7 @@ use super::cases;
 use super::syntax::{SUBTEST, description, severity};
 use super::yaml::Yaml;
 use crate::cases::TestCases;
-use crate::explain::{self, Extent};
+use crate::explain::{self, Extent, Sink};
 use crate::{known_failure, words};
 
 /// Maximum number of output lines.
@@ -74,11 +74,8 @@ fn explained(yaml: &mut Yaml<'_>, test: &TestRecord, verdict: Verdict) {
     if test.plan.is_repeated() {
         yaml.number("repetition", f64::from(attempt.repetition));
     }
-    let lines = explain::lines(|sink| {
-        explain::explain(attempt, Extent::ALL, sink);
-        explain::left(&attempt.leaked, sink);
-    });
-    yaml.lines("details", lines);
+    let explained = |sink: Sink<'_>| explain::attempt(attempt, Extent::ALL, sink);
+    yaml.lines("details", explain::lines(explained));
     let (tail, total) = words::tail(&attempt.output, OUTPUT_LINES);
     let cut = (total > OUTPUT_LINES).then(|| format!("… the last {OUTPUT_LINES} of {total} lines"));
     yaml.lines("output", cut.into_iter().chain(tail.map(str::to_owned)));

@@ -30,11 +30,6 @@ pub(super) fn show(lines: &mut TextLines, attempt: &AttemptRecord) {
     }
 }
 
-/// Whether something is written with the case in which it was reported.
-pub(super) fn is_in_case(attempt: &AttemptRecord, case: Option<CaseId>) -> bool {
-    case.is_some_and(|case| attempt.cases.get(case).is_some())
-}
-
 fn show_case(lines: &mut TextLines, case: &CaseRecord, details: &[String]) {
     let indent = 6 + INDENT * case.depth().min(DEPTH);
     let result = match (case.verdict(), case.duration()) {

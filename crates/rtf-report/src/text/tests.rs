@@ -81,14 +81,14 @@ fn phases(lines: &mut TextLines, attempt: &AttemptRecord) {
 fn details(lines: &mut TextLines, attempt: &AttemptRecord) {
     // Failures, violations, stacks and leaked processes come first,
     // then everything else.
-    explain::explain(attempt, Extent::ALL, &mut |_, line| lines.at(6, line));
-    explain::left(&attempt.leaked, &mut |_, line| lines.at(6, line));
+    explain::attempt(attempt, Extent::ALL, &mut |_, line| lines.at(6, line));
     cases::show(lines, attempt);
+    let is_own = |case| !explain::is_in_case(attempt, case);
     let others = attempt
         .messages
         .iter()
         .filter(|message| matches!(message.kind, MessageKind::Report | MessageKind::Check))
-        .filter(|message| !cases::is_in_case(attempt, message.case));
+        .filter(|message| is_own(message.case));
     for message in others {
         explain::message(message, &mut |_, line| lines.at(6, line));
     }
@@ -99,19 +99,12 @@ fn details(lines: &mut TextLines, attempt: &AttemptRecord) {
     for question in &attempt.questions {
         explain::question(question, &mut |_, line| lines.at(6, line));
     }
-    for measurement in attempt.measurements.iter().filter(|m| m.is_within_limits()) {
-        if cases::is_in_case(attempt, measurement.case) {
-            continue;
-        }
-        lines.at(6, &explain::measurement(measurement));
-    }
+    let within = attempt.measurements.iter().filter(|it| it.is_within_limits() && is_own(it.case));
+    within.for_each(|measurement| lines.at(6, &explain::measurement(measurement)));
     for series in attempt.series.iter().filter(|series| series.outside == 0) {
         lines.at(6, &explain::series(series));
     }
-    for attachment in &attempt.attachments {
-        if cases::is_in_case(attempt, attachment.case) {
-            continue;
-        }
+    for attachment in attempt.attachments.iter().filter(|it| is_own(it.case)) {
         let (name, place) = (escape::line(&attachment.name), words::attachment_place(attachment));
         lines.fact(6, "attached", &format!("{name}: {place}"));
     }
