@@ -48,21 +48,12 @@ function takeEarly(address: string): Promise<Response> | undefined {
     return response;
 }
 
-interface Options {
-    method?: 'GET' | 'POST' | 'DELETE';
-    body?: unknown;
-    signal?: AbortSignal | null;
-}
-
-async function request(path: string, options: Options = {}): Promise<Response> {
-    const { method = 'GET', body, signal = null } = options;
-    const json = body === undefined ? {} : { 'Content-Type': 'application/json' };
-    const content = body === undefined ? null : JSON.stringify(body);
+async function request(path: string, options: RequestInit = {}): Promise<Response> {
+    const { method, signal } = options;
     let response: Response;
     try {
-        const early = method === 'GET' ? takeEarly(BASE + path) : undefined;
-        response = await (early ??
-            fetch(BASE + path, { method, headers: json, body: content, signal }));
+        const early = method === undefined ? takeEarly(BASE + path) : undefined;
+        response = await (early ?? fetch(BASE + path, options));
         signal?.throwIfAborted();
     } catch (problem) {
         if (signal?.aborted) throw problem;
@@ -134,12 +125,16 @@ export async function measurements(run: string, test: number, attempt: number) {
     return page.measurements;
 }
 
-export const signIn = (token: string) => request('/session', { method: 'POST', body: { token } });
+const post = (route: (string | number)[], body: unknown = {}) =>
+    request(path(route), {
+        method: 'POST',
+        headers: { 'Content-Type': 'application/json' },
+        body: JSON.stringify(body),
+    });
+
+export const signIn = (token: string) => post(['session'], { token });
 
 export const signOut = () => request('/session', { method: 'DELETE' });
-
-const post = (parts: (string | number)[], body: unknown = {}) =>
-    request(path(parts), { method: 'POST', body });
 
 export const stopRun = (run: string) => post(['runs', run, 'stop']);
 

@@ -1,6 +1,6 @@
 // The results of one campaign as plots.
 
-import type { CampaignCell, CampaignMap, CampaignReport, EpisodeRun } from '../generated/api';
+import type { CampaignMap, CampaignReport, EpisodeRun } from '../generated/api';
 import { runHref, testHref } from './route';
 
 /** The height of the plot of the progress. */
@@ -59,26 +59,17 @@ export function drawProgress({ progress, claim }: CampaignReport, width: number)
     return { ...axes, line: line.join(' '), band, claim: y(claim) };
 }
 
-export interface HeatMap {
-    columns: string[];
-    rows: { values: string; cells: CampaignCell[] }[];
-}
-
 /** The map of two parameters, in which either may be that of the columns. */
-export function mapOf(maps: readonly CampaignMap[], x: string, y: string): HeatMap | null {
-    const straight = maps.find((map) => map.x === x && map.y === y);
-    if (straight !== undefined) {
-        const columns = straight.rows[0]?.cells.map(({ values }) => values) ?? [];
-        return { columns, rows: straight.rows };
-    }
-    const turned = maps.find((map) => map.x === y && map.y === x);
-    if (turned === undefined) return null;
-    const names = turned.rows[0]?.cells.map(({ values }) => values) ?? [];
+export function mapOf(maps: readonly CampaignMap[], x: string, y: string) {
+    const found = maps.find((map) => [x, y].includes(map.x) && [x, y].includes(map.y) && x !== y);
+    if (found === undefined) return null;
+    const names = found.rows[0]?.cells.map(({ values }) => values) ?? [];
+    if (found.x === x) return { columns: names, rows: found.rows };
     const rows = names.map((values, index) => ({
         values,
-        cells: turned.rows.flatMap((row) => row.cells[index] ?? []),
+        cells: found.rows.flatMap((row) => row.cells[index] ?? []),
     }));
-    return { columns: turned.rows.map(({ values }) => values), rows };
+    return { columns: found.rows.map(({ values }) => values), rows };
 }
 
 /** The names of the parameters that have maps. */

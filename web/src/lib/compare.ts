@@ -39,19 +39,18 @@ const FACTOR = 1.25;
 const LEAST_US = 100_000;
 
 export function compareRuns(before: RunRecord, after: RunRecord): Pair[] {
-    const side = (record: RunRecord, test: Test): Side => ({ test, state: record.stateOf(test) });
-    const old = new Map(before.tests.map((test) => [fullName(before, test), side(before, test)]));
-    const pairs = after.tests.map((test): Pair => {
-        const name = fullName(after, test);
-        const pair = { name, old: old.get(name) ?? null, new: side(after, test) };
-        old.delete(name);
+    const [old, now] = [sides(before), sides(after)];
+    const pairs = [...new Set([...now.keys(), ...old.keys()])].map((name): Pair => {
+        const pair = { name, old: old.get(name) ?? null, new: now.get(name) ?? null };
         return { ...pair, change: changeOf(pair.old, pair.new) };
     });
-    for (const [name, gone] of old) {
-        pairs.push({ name, old: gone, new: null, change: 'gone' });
-    }
     const rank = (pair: Pair) => CHANGES.indexOf(pair.change);
     return pairs.sort((a, b) => rank(a) - rank(b));
+}
+
+function sides(record: RunRecord): Map<string, Side> {
+    const side = (test: Test) => ({ test, state: record.stateOf(test) });
+    return new Map(record.tests.map((test) => [fullName(record, test), side(test)]));
 }
 
 function changeOf(old: Side | null, now: Side | null): Change {

@@ -19,7 +19,7 @@ export class OutputRows {
     private open: OutputRow | null = null;
     private filled = 0;
 
-    constructor(private readonly columns: number) {}
+    constructor(readonly columns: number) {}
 
     add(entry: OutputEntry): void {
         if (entry.omitted_bytes !== undefined) this.gap(entry);

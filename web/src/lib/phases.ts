@@ -3,18 +3,9 @@
 import type { Attempt } from './api-types';
 import { phaseName } from './event';
 
-export interface PhaseTime {
-    name: string;
-    /** Microseconds; `null` while it lasts. */
-    took: number | null;
-}
-
-/** All phases from the start of the attempt on: it starts with loading the plug-in. */
-export function phaseTimes(
-    started: number,
-    phases: Attempt['phases'],
-    finished: number | null,
-): PhaseTime[] {
+/** All phases from the start of the attempt on: it starts with loading the plug-in. Each took
+ *  microseconds; `null` while it lasts. */
+export function phaseTimes(started: number, phases: Attempt['phases'], finished: number | null) {
     const begins = phases.map(({ phase, at }) => ({ name: phaseName(phase), at }));
     const first = begins[0];
     if (first === undefined || first.at > started) begins.unshift({ name: 'load', at: started });

@@ -3,13 +3,6 @@
 import type { Test } from './api-types';
 import type { RunRecord } from './record/record';
 
-export interface Estimate {
-    /** Estimated seconds until the last test has finished. */
-    seconds: number;
-    /** The basis of the estimate. */
-    basis: 'last run' | 'this run';
-}
-
 /** Durations of tests in another run, by `suite/test`, in microseconds. */
 export type History = ReadonlyMap<string, number>;
 
@@ -27,11 +20,11 @@ export function fullName(record: RunRecord, test: Test): string {
 }
 
 /**
- * The remaining time: each unfinished test is expected to take as long as in
- * the last run, or as long as the average test of this run.
- * `null` without any data.
+ * The remaining seconds until the last test has finished, and the basis of the estimate: each
+ * unfinished test is expected to take as long as in the last run, or as long as the average test
+ * of this run. `null` without any data.
  */
-export function estimate(record: RunRecord, now: number, history: History): Estimate | null {
+export function estimate(record: RunRecord, now: number, history: History) {
     let spent = 0;
     let repetitions = 0;
     for (const test of record.tests) {
@@ -57,6 +50,5 @@ export function estimate(record: RunRecord, now: number, history: History): Esti
         const current = running && running.finished === undefined ? now - running.started : 0;
         left += Math.max(0, whole - test.duration_us - current);
     }
-    const basis = known * 2 > open ? 'last run' : 'this run';
-    return { seconds: left / 1e6, basis };
+    return { seconds: left / 1e6, basis: known * 2 > open ? 'last run' : 'this run' };
 }

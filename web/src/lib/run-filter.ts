@@ -19,12 +19,7 @@ export type FilterName = (typeof FILTER_NAMES)[number];
 export type RunFilter = Partial<Record<FilterName, string>>;
 
 /** A filter, and the problems of its invalid parts. */
-export interface ParsedFilter {
-    filter: RunFilter;
-    problems: string[];
-}
-
-export function parseFilter(query: string): ParsedFilter {
+export function parseFilter(query: string) {
     const filter: RunFilter = {};
     const problems: string[] = [];
     for (const [name, text] of new URLSearchParams(query)) {

@@ -18,6 +18,11 @@ class Theme {
 
     constructor() {
         system.addEventListener('change', () => (this.systemIsDark = system.matches));
+        $effect.root(() => {
+            $effect(() => {
+                document.documentElement.dataset['theme'] = this.isDark ? 'dark' : 'light';
+            });
+        });
     }
 
     get isDark(): boolean {

@@ -48,9 +48,7 @@ export async function select(
         (item) => item.parent === undefined && item.children.size === 0,
     );
     await Promise.all(unlisted.map((item) => tree.list(item)));
-    const nodes = tree.nodes();
-    const chosen = nodesToRun(included.map(nodes.node), (request.exclude ?? []).map(nodes.node));
-    return chosen.map(nodes.item);
+    return nodesToRun(included, request.exclude ?? [], (item) => items(item.children));
 }
 
 /** Groups items by workspace folder, in which rtf is started. */

@@ -3,21 +3,15 @@
 import * as vscode from 'vscode';
 import { expandVariables } from '../logic/command';
 
-export interface Settings {
-    /** The program. */
-    path: string;
-    /** The glob of suites. */
-    suites: string;
-    /** Further arguments of `rtf run`. */
-    arguments: string[];
-}
-
-export function settingsOf(folder: vscode.WorkspaceFolder): Settings {
+export function settingsOf(folder: vscode.WorkspaceFolder) {
     const settings = vscode.workspace.getConfiguration('rtf', folder);
     const expand = (text: string): string => expandVariables(text, folder.uri.fsPath);
     return {
+        /** The program. */
         path: expand(settings.get('path', 'rtf')),
-        suites: settings.get('suites', '**/*.xml'),
+        /** The glob of suites. */
+        suites: settings.get<string>('suites', '**/*.xml'),
+        /** Further arguments of `rtf run`. */
         arguments: settings.get<string[]>('arguments', []).map(expand),
     };
 }

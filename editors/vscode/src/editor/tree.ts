@@ -7,7 +7,6 @@ import { listCommand, type Selection } from '../logic/command';
 import { type ListedCase, type ListedTest, type Location, parseList } from '../logic/list';
 import { locate } from '../logic/locate';
 import { parseProblems } from '../logic/problems';
-import type { Node } from '../logic/selection';
 import { isSuite } from '../logic/suite-file';
 import type { Target } from '../logic/updates';
 import { start } from './process';
@@ -193,29 +192,6 @@ export class Tree implements vscode.Disposable {
         if (path === undefined) return undefined;
         const start = new vscode.Position(Math.max(line - 1, 0), 0);
         return new vscode.Location(vscode.Uri.file(path), start);
-    }
-
-    /** An item for `nodesToRun`, and the way back. */
-    nodes(): { node(item: vscode.TestItem): Node; item(node: Node): vscode.TestItem } {
-        const nodeOf = new Map<vscode.TestItem, Node>();
-        const itemOf = new Map<Node, vscode.TestItem>();
-        const node = (item: vscode.TestItem): Node => {
-            const known = nodeOf.get(item);
-            if (known !== undefined) return known;
-            const made: Node = {
-                id: item.id,
-                get parent() {
-                    return item.parent === undefined ? undefined : node(item.parent);
-                },
-                get children() {
-                    return items(item.children).map(node);
-                },
-            };
-            nodeOf.set(item, made);
-            itemOf.set(made, item);
-            return made;
-        };
-        return { node, item: (made) => itemOf.get(made) as vscode.TestItem };
     }
 
     private showProblems(uri: vscode.Uri, dir: string, errors: string): void {

@@ -25,36 +25,15 @@ export function waitingTest(line: string): WaitingTest | undefined {
     return { pid: Number(announced[1]), runner: Number(announced[2]) };
 }
 
-/** A configuration that attaches a debugger, as in launch.json. */
-export interface AttachConfiguration {
-    type: string;
-    request: 'attach';
-    name: string;
-    [option: string]: unknown;
-}
-
-/** A debugger of an extension. */
-export interface Debugger {
-    /** The extension that provides it. */
-    extension: string;
-    extensionName: string;
-    configuration: AttachConfiguration;
-}
-
-/** The debugger of a test; nothing if no debugger can attach to tests of this type. */
-export function debuggerOf(type: string, test: string, pid: number): Debugger | undefined {
-    const name = `rtf: ${test}`;
+/** The debugger of a test: the extension that provides it, and how it attaches, as in launch.json;
+ *  nothing if no debugger can attach to tests of this type. */
+export function debuggerOf(type: string, test: string, pid: number) {
+    const attach = { request: 'attach', name: `rtf: ${test}`, processId: pid } as const;
     if (type === 'python') {
         return {
             extension: 'ms-python.debugpy',
             extensionName: 'Python Debugger',
-            configuration: {
-                type: 'debugpy',
-                request: 'attach',
-                name,
-                processId: pid,
-                justMyCode: false,
-            },
+            configuration: { ...attach, type: 'debugpy', justMyCode: false },
         };
     }
     // Plug-ins in C, C++ and Ada.
@@ -63,10 +42,8 @@ export function debuggerOf(type: string, test: string, pid: number): Debugger | 
         extension: 'ms-vscode.cpptools',
         extensionName: 'C/C++',
         configuration: {
+            ...attach,
             type: 'cppdbg',
-            request: 'attach',
-            name,
-            processId: pid,
             program: `/proc/${pid}/exe`,
             MIMode: 'gdb',
             // The plug-in is not loaded yet.

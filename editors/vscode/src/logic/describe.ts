@@ -1,15 +1,10 @@
 // The lines that the terminal of a test run shows for events that belong to no test.
 
-import type { RunEvent, Source } from './events';
-
-/** The names of the ids in events. */
-export interface Names {
-    nameOf(source: Source): string;
-    suiteName(suite: number): string;
-}
+import type { RunEvent } from './events';
+import type { RunFold } from './fold';
 
 /** Returns the text for an event; nothing for events that are shown at a test. */
-export function describe(event: RunEvent, names: Names): string | undefined {
+export function describe(event: RunEvent, names: RunFold): string | undefined {
     switch (event.type) {
         case 'run-started':
             return `run ${event.run}\n`;

@@ -1,12 +1,12 @@
 // From the events of a run to changes of the Test Explorer.
 
 import type { EventOf, RunEvent, Source } from './events';
-import { describe, type Names } from './describe';
+import { describe } from './describe';
 import { TestFold } from './test-fold';
 import type { Problem, Target, Update } from './updates';
 
 /** Follows one run. */
-export class RunFold implements Names {
+export class RunFold {
     private readonly suites = new Map<number, EventOf<'suite-planned'>>();
     private readonly fixtures = new Map<number, EventOf<'fixture-planned'>>();
     private readonly hooks = new Map<number, EventOf<'hook-planned'>>();

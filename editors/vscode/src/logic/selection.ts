@@ -2,32 +2,30 @@
 
 /** The part of a test item that matters here. */
 export interface Node {
-    id: string;
     parent: Node | undefined;
-    children: readonly Node[];
 }
 
 /** Returns the nodes to run: each included one, without the excluded nodes and without those
  *  that another included node contains. */
-export function nodesToRun(included: readonly Node[], excluded: readonly Node[]): Node[] {
-    const isIncluded = new Set(included);
-    const isExcluded = new Set(excluded);
-    return [...isIncluded]
+export function nodesToRun<T extends Node>(
+    included: readonly T[],
+    excluded: readonly T[],
+    childrenOf: (node: T) => readonly T[],
+): T[] {
+    const isIncluded = new Set<Node>(included);
+    const isExcluded = new Set<Node>(excluded);
+    const contains = (node: T): boolean =>
+        childrenOf(node).some((child) => isExcluded.has(child) || contains(child));
+    const without = (node: T): T[] => {
+        if (isExcluded.has(node)) return [];
+        return contains(node) ? childrenOf(node).flatMap(without) : [node];
+    };
+    return [...new Set(included)]
         .filter((node) => !ancestors(node).some((each) => isIncluded.has(each)))
         .filter((node) => !ancestors(node).some((each) => isExcluded.has(each)))
-        .flatMap((node) => without(node, isExcluded));
+        .flatMap(without);
 }
 
-function without(node: Node, excluded: ReadonlySet<Node>): Node[] {
-    if (excluded.has(node)) return [];
-    if (!contains(node, excluded)) return [node];
-    return node.children.flatMap((child) => without(child, excluded));
-}
-
-function contains(node: Node, wanted: ReadonlySet<Node>): boolean {
-    return node.children.some((child) => wanted.has(child) || contains(child, wanted));
-}
-
-function ancestors(node: Node): Node[] {
-    return node.parent === undefined ? [] : [node.parent, ...ancestors(node.parent)];
+function ancestors({ parent }: Node): Node[] {
+    return parent === undefined ? [] : [parent, ...ancestors(parent)];
 }

@@ -121,13 +121,10 @@ export class TestFold {
 
     private skip(reason: string): Update[] {
         if (this.decision !== undefined && isBad(this.decision.verdict)) return this.conclude();
-        const skipped: Update[] = [
-            this.output(`skipped: ${reason}\n`),
-            this.finished('skipped', []),
-        ];
-        return this.repetition === 0
-            ? [{ kind: 'started', target: this.target }, ...skipped]
-            : skipped;
+        const started: Update[] =
+            this.repetition === 0 ? [{ kind: 'started', target: this.target }] : [];
+        const text = this.output(`skipped: ${reason}\n`);
+        return [...started, text, this.finished('skipped', [])];
     }
 
     private startCase(event: EventOf<'case-started'>): Update[] {

@@ -25,7 +25,6 @@ const PAGE = 1000;
 
 export interface MatrixRow {
     name: string;
-    suiteFile: string;
     /** One letter per run. */
     verdicts: string;
 }
@@ -69,11 +68,7 @@ function hasSameRuns(a: readonly MatrixRun[], b: readonly MatrixRun[]): boolean 
 
 /** The matrix with the rows of another page. */
 export function extended(matrix: Matrix | null, page: HistoryMatrix): Matrix {
-    const rows = page.tests.map((test) => ({
-        name: testName(test),
-        suiteFile: test.suite_file ?? '',
-        verdicts: test.verdicts,
-    }));
+    const rows = page.tests.map((test) => ({ name: testName(test), verdicts: test.verdicts }));
     return {
         runs: page.runs,
         rows: [...(matrix?.rows ?? []), ...rows],

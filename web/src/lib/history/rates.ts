@@ -1,28 +1,11 @@
 // Rates of campaigns as a plot over campaigns.
 
 import type { CampaignChange, CampaignSeries, RatePoint } from '../../generated/api';
-import { intervalText, percent as exact, rateAxes, type RateAxes } from '../campaign';
+import { intervalText, percent as exact, rateAxes } from '../campaign';
 import { percent } from './trends';
 
 /** The height of a plot. */
 export const HEIGHT = 180;
-
-/** A rate with its interval, in pixels. */
-export interface RateMark {
-    point: RatePoint;
-    x: number;
-    y: number;
-    low: number;
-    high: number;
-    /** The claimed rate of this campaign. */
-    claim: number;
-}
-
-export interface RateDrawing extends RateAxes {
-    marks: RateMark[];
-    /** The first campaigns after changes. */
-    changes: number[];
-}
 
 /** The changes of a series, the oldest first. */
 export function changesOf(series: CampaignSeries, changes: CampaignChange[]): CampaignChange[] {
@@ -30,12 +13,13 @@ export function changesOf(series: CampaignSeries, changes: CampaignChange[]): Ca
     return changes.filter(({ campaign }) => known.has(campaign)).reverse();
 }
 
-/** Places rates in a plot of this width. Campaigns without a rate have no mark. */
+/** Places rates with their intervals and the claims of their campaigns in a plot of this width, and
+ *  the first campaigns after changes. Campaigns without a rate have no mark. */
 export function drawRates(
     points: readonly RatePoint[],
     changes: readonly CampaignChange[],
     width: number,
-): RateDrawing {
+) {
     const values = points.flatMap(({ rate, claim }) => [claim, ...(rate ? [rate.low] : [])]);
     const least = Math.min(1, ...values);
     // From 100 % down to a multiple of 5 % below all intervals.

@@ -2,6 +2,7 @@
 
 import type { HistoryChange, SeriesPoint, TestHistory, TestSeries } from '../../generated/api';
 import { short } from '../format';
+import { present } from '../present';
 import type { Series } from '../series';
 import { testName } from './query';
 
@@ -15,19 +16,15 @@ export interface RunPlot {
     changes: HistoryChange[];
 }
 
-interface Value {
-    run: string;
-    started: string;
-    value: number | null;
-}
+type Value = Pick<SeriesPoint, 'run' | 'started' | 'value'>;
 
 function plotOf(
     values: readonly Value[],
     about: Pick<Series, 'key' | 'name' | 'unit' | 'low' | 'high' | 'violations'>,
     changes: HistoryChange[],
 ): RunPlot {
-    const finite = values.flatMap(({ value }) => (value === null ? [] : [value]));
-    const points = values.map(({ value }, at) => ({ at, value }));
+    const finite = values.flatMap(({ value }) => value ?? []);
+    const points = values.map(({ value = null }, at) => ({ at, value }));
     const mean = finite.reduce((sum, value) => sum + value / finite.length, 0);
     const marks = changes.map(({ run }) => values.findIndex((value) => value.run === run));
     return {
@@ -35,7 +32,7 @@ function plotOf(
             ...about,
             learned: false,
             points,
-            last: values.at(-1)?.value ?? null,
+            last: points.at(-1)?.value ?? null,
             least: Math.min(...finite),
             most: Math.max(...finite),
             mean: finite.length === 0 ? NaN : mean,
@@ -49,11 +46,6 @@ function plotOf(
 /** A measurement or signal over runs. */
 export function seriesPlot(one: TestSeries, changes: readonly HistoryChange[]): RunPlot {
     const { name, unit = '', kind } = one;
-    const values = one.points.map(({ run, started, value }: SeriesPoint) => ({
-        run,
-        started,
-        value: value ?? null,
-    }));
     const last = one.points.at(-1);
     const violations = one.points.reduce((sum, { outside = 0 }) => sum + outside, 0);
     const [low, high] = [last?.low ?? null, last?.high ?? null];
@@ -65,7 +57,7 @@ export function seriesPlot(one: TestSeries, changes: readonly HistoryChange[]): 
         change.series.kind === kind &&
         (change.series.unit ?? '') === unit;
     const key = `${test}\n${kind}\n${name}\n${unit}`;
-    return plotOf(values, { key, name, unit, low, high, violations }, changes.filter(isThis));
+    return plotOf(one.points, { key, name, unit, low, high, violations }, changes.filter(isThis));
 }
 
 /** The durations of a test over runs. */
@@ -73,7 +65,7 @@ export function durationPlot(test: TestHistory, changes: readonly HistoryChange[
     const values = test.results.map(({ run, started, duration }) => ({
         run,
         started,
-        value: duration ?? null,
+        ...present({ value: duration }),
     }));
     const about = { key: 'duration', name: 'duration', unit: 's', violations: 0 };
     const isThis = (change: HistoryChange) =>

@@ -2,7 +2,7 @@
 // an interrupted stream, and starts over when the server requires it.
 
 import { ApiError, snapshot } from '../api';
-import type { RunStateName, Snapshot } from '../api-types';
+import type { RunStateName } from '../api-types';
 import type { Event } from '../event';
 import { messageOf } from '../task.svelte';
 import { RunRecord } from '../record/record';
@@ -103,8 +103,7 @@ export class Feed {
     }
 
     private async load(): Promise<void> {
-        const data: Snapshot = await snapshot(this.run, this.closing.signal);
-        this.record = new RunRecord(data);
+        this.record = new RunRecord(await snapshot(this.run, this.closing.signal));
         this.isStale = false;
         this.listener.loaded(this.record);
     }

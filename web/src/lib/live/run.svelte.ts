@@ -15,7 +15,7 @@ import { Feed, type Connection } from './feed';
 const KEPT = 30;
 
 /** Receives new events until it is removed. */
-export type DetailListener = (events: Event[]) => void;
+type DetailListener = (events: Event[]) => void;
 
 const FRAME_MS = 16;
 /** The minimum time between two draws: faster updates are not visible, and the tests need the CPU. */
@@ -28,7 +28,6 @@ const LATEST_MS = 120;
 const CALM_MS = 500;
 
 export class LiveRun {
-    readonly name: string;
     connection: Connection = $state.raw({ kind: 'loading' });
     /** The record; a new object after each change. */
     record: RunRecord = $state.raw(new RunRecord());
@@ -52,8 +51,7 @@ export class LiveRun {
     /** The server's clock minus the browser's, in seconds. */
     private skew = 0;
 
-    constructor(name: string) {
-        this.name = name;
+    constructor(readonly name: string) {
         this.feed = new Feed(name, {
             loaded: (record) => {
                 this.record = record;

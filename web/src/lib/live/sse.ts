@@ -17,16 +17,9 @@ export class SseParser {
 
     push(text: string): SseEvent[] {
         const events: SseEvent[] = [];
-        const whole = this.rest + text;
-        let from = 0;
-        for (;;) {
-            const end = whole.indexOf('\n', from);
-            if (end === -1) break;
-            const stop = whole[end - 1] === '\r' && end > from ? end - 1 : end;
-            this.line(whole.slice(from, stop), events);
-            from = end + 1;
-        }
-        this.rest = whole.slice(from);
+        const lines = (this.rest + text).split('\n');
+        this.rest = lines.pop() ?? '';
+        for (const line of lines) this.line(line.endsWith('\r') ? line.slice(0, -1) : line, events);
         return events;
     }
 
@@ -40,11 +33,8 @@ export class SseParser {
             this.data = [];
             return;
         }
-        const colon = line.indexOf(':');
-        if (colon === 0) return;
-        const name = colon === -1 ? line : line.slice(0, colon);
-        const value =
-            colon === -1 ? '' : line.slice(line[colon + 1] === ' ' ? colon + 2 : colon + 1);
+        // A comment has an empty name.
+        const [, name, value = ''] = /^([^:]*):? ?(.*)$/s.exec(line) ?? [];
         if (name === 'data') this.data.push(value);
         else if (name === 'event') this.type = value;
         else if (name === 'id') this.id = value;

@@ -13,15 +13,12 @@ export interface CaseRow {
 export class CaseList {
     private readonly byId = new Map<number, Case>();
     /** Announced cases that have not started. */
-    private planned: string[] = [];
+    notRun: readonly string[] = [];
     /** Number of passed cases that the server counts, but does not list. */
     omitted = 0;
 
     get size(): number {
         return this.byId.size;
-    }
-    get notRun(): readonly string[] {
-        return this.planned;
     }
 
     get(id: number): Case | undefined {
@@ -33,7 +30,7 @@ export class CaseList {
         for (const each of cases) {
             if (this.byId.get(each.case)?.verdict === undefined) this.byId.set(each.case, each);
         }
-        if (notRun.length > 0) this.planned = [...notRun];
+        if (notRun.length > 0) this.notRun = notRun;
         this.omitted = Math.max(this.omitted, omitted);
     }
 
@@ -41,13 +38,14 @@ export class CaseList {
     apply(event: Event): void {
         switch (event.type) {
             case 'cases-planned': {
-                const known = new Set([...this.planned, ...this.topLevelNames()]);
-                this.planned.push(...event.names.filter((name) => !known.has(name)));
+                const known = new Set([...this.notRun, ...this.topLevelNames()]);
+                const added = event.names.filter((name) => !known.has(name));
+                this.notRun = [...this.notRun, ...added];
                 break;
             }
             case 'case-started': {
                 if (event.parent == null && !event.earlier_attempts)
-                    this.planned = this.planned.filter((name) => name !== event.name);
+                    this.notRun = this.notRun.filter((name) => name !== event.name);
                 if (!this.byId.has(event.case)) this.byId.set(event.case, this.started(event));
                 break;
             }
