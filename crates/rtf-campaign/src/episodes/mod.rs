@@ -58,8 +58,7 @@ pub fn resolve(campaign: &Campaign, resolution: &mut Resolution<'_>) -> Option<E
     {
         let combinations = space.combinations();
         let message = format!("only {episodes} of {combinations} combinations have an episode");
-        let problem = Diagnostic::warning("few-episodes", message)
-            .label(resolution.source.label(campaign.span, ""));
+        let problem = resolution.source.warning("few-episodes", campaign.span, message);
         resolution.report(problem.hint("use `choice` for a random selection"));
     }
     let mut seeds = SeedStream::new(campaign.seed);
@@ -122,7 +121,6 @@ fn report_constraints(
 /// Reports more combinations than a list may have.
 fn report_size(campaign: &Campaign, resolution: &mut Resolution<'_>) {
     let message = format!("the campaign has more than {MAX_COMBINATIONS} combinations");
-    let problem = Diagnostic::error("too-many-combinations", message)
-        .label(resolution.source.label(campaign.span, ""));
+    let problem = resolution.source.error("too-many-combinations", campaign.span, message);
     resolution.report(problem.hint("sample some parameters: `distribution=\"choice\"`"));
 }

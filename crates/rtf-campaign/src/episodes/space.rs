@@ -50,8 +50,11 @@ impl<'a> Space<'a> {
                     let campaign = (campaign.seed, campaign.episodes.unwrap_or(1));
                     let Some(sampler) = Sampler::new(of, campaign, &mut sobol_dimensions) else {
                         let message = format!("more than {DIMENSIONS} parameters are `sobol`");
-                        let label = resolution.source.label(name.span, "");
-                        resolution.report(Diagnostic::error("invalid-value", message).label(label));
+                        resolution.report(resolution.source.error(
+                            "invalid-value",
+                            name.span,
+                            message,
+                        ));
                         continue;
                     };
                     names.push((name.value.clone(), name.span));
@@ -143,8 +146,9 @@ fn check_names(names: &[(String, Span)], resolution: &mut Resolution<'_>) {
     for (index, (name, span)) in names.iter().enumerate() {
         let is_same = |(other, _): &&(String, Span)| variable(other) == variable(name);
         let Some((other, first)) = names[..index].iter().find(is_same) else { continue };
-        let problem = Diagnostic::error("duplicate-name", describe_same_variable(other, name))
-            .label(resolution.source.label(*span, ""))
+        let problem = resolution
+            .source
+            .error("duplicate-name", *span, describe_same_variable(other, name))
             .label(resolution.source.label(*first, "the first one"));
         resolution.report(problem);
     }

@@ -117,8 +117,8 @@ fn check_episodes(reader: &mut ElementReader<'_>, campaign: &Campaign) {
     if sampled.is_none() && !campaign.parameters.is_empty() {
         return;
     }
-    let problem = Diagnostic::error("incomplete", "`<campaign>` needs the attribute `episodes`")
-        .label(reader.source.label(campaign.span, ""));
+    let problem =
+        reader.error("incomplete", campaign.span, "`<campaign>` needs the attribute `episodes`");
     reader.report(match sampled {
         Some(sampled) => {
             problem.label(reader.source.label(sampled.span(), "has any number of values"))

@@ -78,14 +78,14 @@ pub(super) fn check_rule(reader: &mut ElementReader<'_>, campaign: &Campaign) {
     match (campaign.stop, &claim.confidence) {
         (StoppingRule::Sprt { .. }, Some(confidence)) => {
             let message = "`confidence` has no effect with `rule=\"sprt\"`";
-            let problem = Diagnostic::error("conflicting-attributes", message)
-                .label(reader.source.label(confidence.span, ""))
+            let problem = reader
+                .error("conflicting-attributes", confidence.span, message)
                 .hint("`alpha` and `beta` are the error rates");
             reader.report(problem);
         }
         (StoppingRule::Fixed | StoppingRule::ConfidenceSequence, None) => {
-            let problem = Diagnostic::error("incomplete", "the claim needs a confidence")
-                .label(reader.source.label(claim.span, ""))
+            let problem = reader
+                .error("incomplete", claim.span, "the claim needs a confidence")
                 .hint("add `confidence=\"0.95\"` to `<claim>`");
             reader.report(problem);
         }
@@ -95,8 +95,7 @@ pub(super) fn check_rule(reader: &mut ElementReader<'_>, campaign: &Campaign) {
         && !(low..=high).contains(&claim.rate)
     {
         let message = format!("the claimed rate is not between `low`, {low}, and `high`, {high}");
-        let label = reader.source.label(claim.span, "");
-        reader.report(Diagnostic::error("invalid-value", message).label(label));
+        reader.report(reader.error("invalid-value", claim.span, message));
     }
     if campaign.stop != StoppingRule::Fixed {
         let dependent = |parameter: &&DeclaredParameter| !parameter.is_independent();

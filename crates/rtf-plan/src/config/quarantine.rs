@@ -89,8 +89,9 @@ fn read_table(
         }
     }
     if !has_filter {
-        let problem = Diagnostic::error("incomplete", "a `[[quarantine]]` needs a `filter`")
-            .label(reader.source.label(span(value), ""))
+        let problem = reader
+            .source
+            .error("incomplete", span(value), "a `[[quarantine]]` needs a `filter`")
             .hint("for example `filter = \"name(=Grasp)\"`");
         reader.problems.push(problem);
     }
@@ -147,8 +148,9 @@ fn relocate(source: &SourceText, whole: Span, text: &str, label: &Label) -> Labe
 }
 
 fn unknown_key(reader: &mut TomlReader<'_>, name: &str, span: Span) {
-    let problem = Diagnostic::error("unknown-key", format!("unknown key `{QUARANTINE}.{name}`"))
-        .label(reader.source.label(span, ""))
+    let problem = reader
+        .source
+        .error("unknown-key", span, format!("unknown key `{QUARANTINE}.{name}`"))
         .note(format!("the keys are {}", quoted(KEYS, ", ")));
     reader.problems.push(match nearest(name, KEYS.into_iter()) {
         Some(near) => problem.hint(format!("did you mean `{near}`?")),

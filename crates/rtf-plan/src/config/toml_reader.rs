@@ -51,7 +51,7 @@ pub fn parse(source: &SourceText, problems: &mut Vec<Diagnostic>) -> ParsedConfi
     for error in errors {
         let span = Span::new(error.span().unwrap_or_default());
         let message = format!("not TOML: {}", error.message().lines().next().unwrap_or_default());
-        problems.push(Diagnostic::error("not-toml", message).label(source.label(span, "")));
+        problems.push(source.error("not-toml", span, message));
     }
     let mut reader = TomlReader { source, problems };
     let mut parsed = ParsedConfig::default();
@@ -238,9 +238,9 @@ impl TomlReader<'_> {
         if prefix.is_empty() {
             known.extend([QUARANTINE, "profile", "default-profile"]);
         }
-        let label = self.source.label(span(key), "");
-        let problem = Diagnostic::error("unknown-key", format!("unknown key `{prefix}{name}`"))
-            .label(label)
+        let problem = self
+            .source
+            .error("unknown-key", span(key), format!("unknown key `{prefix}{name}`"))
             .note(format!("the keys are {}", quoted(known.iter().copied(), ", ")));
         self.problems.push(match nearest(name, known.into_iter()) {
             Some(near) => problem.hint(format!("did you mean `{prefix}{near}`?")),

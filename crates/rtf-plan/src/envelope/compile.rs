@@ -64,9 +64,8 @@ impl Compiler<'_> {
         let has_errors = problems.iter().any(|problem| problem.severity == Severity::Error);
         if monitors.is_empty() && !has_errors {
             let message = format!("`{}` limits nothing", self.source.name());
-            let label = self.source.label(Span::new(0..0), "");
             let hint = "write limits, or `model` and `signals`";
-            problems.push(Diagnostic::error("incomplete", message).label(label).hint(hint));
+            problems.push(self.source.error("incomplete", Span::new(0..0), message).hint(hint));
         }
         compiled.monitors = monitors;
     }
@@ -84,8 +83,9 @@ impl Compiler<'_> {
             }
             let known = || model.joints.iter().map(|joint| joint.name.as_str());
             let message = format!("`{}` has no joint `{}` that moves", model.file, name.value);
-            let problem = Diagnostic::error("unknown-joint", message)
-                .label(self.source.label(name.span, ""))
+            let problem = self
+                .source
+                .error("unknown-joint", name.span, message)
                 .note(format!("its joints are {}", quoted(known(), ", ")));
             problems.push(suggest(problem, &name.value, known()));
         }
@@ -236,11 +236,10 @@ impl Compiler<'_> {
     /// Reports an unknown signal, units that do not match, and an empty range.
     fn check(&self, limit: &Limit, problems: &mut Vec<Diagnostic>) {
         let signal = limit.input.signal();
-        let label = self.source.label(signal.span, "");
         let Some(declared) = self.request.signals.iter().find(|it| it.name.value == signal.value)
         else {
             let message = format!("there is no signal `{}`", signal.value);
-            let problem = Diagnostic::error("unknown-signal", message).label(label);
+            let problem = self.source.error("unknown-signal", signal.span, message);
             if limit.span.is_none() {
                 let hint =
                     "declare it with `<signal>` in the suite, or write its joint in `ignore`";
@@ -267,13 +266,11 @@ impl Compiler<'_> {
         if min.unit != max.unit {
             if self.file.factor.is_some_and(|factor| factor < 1.0) {
                 let message = "`factor` needs the same unit for `min` and `max`";
-                let label = self.source.label(at, "");
-                problems.push(Diagnostic::error("unit-mismatch", message).label(label));
+                problems.push(self.source.error("unit-mismatch", at, message));
             }
         } else if min.value > max.value {
             let message = format!("`min` is above `max`: {} > {}", min.constant(), max.constant());
-            let label = self.source.label(at, "");
-            problems.push(Diagnostic::error("empty-range", message).label(label));
+            problems.push(self.source.error("empty-range", at, message));
         }
     }
 

@@ -85,7 +85,7 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn report(&mut self, code: &str, span: Span, message: String) {
-        self.problems.push(Diagnostic::error(code, message).label(self.source.label(span, "")));
+        self.problems.push(self.source.error(code, span, message));
     }
 
     fn wrong(&mut self, name: &str, node: &Node, expected: &str) {

@@ -53,9 +53,8 @@ pub(super) fn plan(
     let of_network = |it: &DeclaredFault| matches!(it.effect, DeclaredEffect::Network { .. });
     for (fault, _) in all.iter().filter(|(fault, _)| of_network(fault) && !declared.has_network) {
         let message = "a fault of the kind `network` needs a suite with a private network";
-        let label = source.label(fault.span, "");
         let hint = "write `isolate=\"network\"` in `<suite>`";
-        problems.push(Diagnostic::error("no-private-network", message).label(label).hint(hint));
+        problems.push(source.error("no-private-network", fault.span, message).hint(hint));
     }
     if fixtures.iter().any(|other| other.name == NAME) {
         let message = format!("a suite with a `<fault>` cannot name a fixture `{NAME}`");

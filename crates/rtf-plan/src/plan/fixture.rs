@@ -251,8 +251,7 @@ impl<'a> ProcessPlanner<'a> {
             Ok(words) if !words.is_empty() => self.command(Spanned::new(words, host.span)),
             _ => {
                 let message = format!("`{SSH_VARIABLE}` is not a command: `{line}`");
-                let label = self.source.label(host.span, "");
-                self.problems.push(Diagnostic::error("invalid-value", message).label(label));
+                self.problems.push(self.source.error("invalid-value", host.span, message));
                 Vec::new()
             }
         }

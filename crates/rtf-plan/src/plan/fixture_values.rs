@@ -89,8 +89,8 @@ impl DeclaredValues<'_> {
                 let shown = format!("{name}.{value}");
                 if let Some((other, first)) = variables.get(&variable) {
                     let message = format!("`{other}` and `{shown}` would both be in `{variable}`");
-                    let problem = Diagnostic::error("repeated-value", message)
-                        .label(source.label(span, ""))
+                    let problem = source
+                        .error("repeated-value", span, message)
                         .label(source.label(*first, "the other one"));
                     problems.push(problem);
                     continue;

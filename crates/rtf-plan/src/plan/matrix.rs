@@ -142,8 +142,9 @@ impl<'a> MatrixExpander<'a> {
                     continue;
                 };
                 let message = describe_same_variable(other, name);
-                let problem = Diagnostic::error("duplicate-name", message)
-                    .label(self.source.label(*span, ""))
+                let problem = self
+                    .source
+                    .error("duplicate-name", *span, message)
                     .label(self.source.label(first, "the first one"));
                 self.problems.push(problem);
                 return None;
@@ -194,8 +195,7 @@ impl<'a> MatrixExpander<'a> {
     }
 
     fn report(&mut self, code: &str, message: &str, span: Span) {
-        let label = self.source.label(span, "");
-        self.problems.push(Diagnostic::error(code, message).label(label));
+        self.problems.push(self.source.error(code, span, message));
     }
 }
 
