@@ -2,16 +2,14 @@
 
 use std::sync::Arc;
 
-use rtf_model::{
-    Diagnostic, FaultAction, FaultConfig, FaultTarget, FaultsConfig, FixtureId, Location,
-};
+use rtf_model::{Diagnostic, FaultAction, FaultConfig, FaultTarget, FaultsConfig, Location};
 
 use super::hosts::FAULTS;
 use super::of_tests::OfTests;
 use super::own_processes::SuiteFixtures;
 use super::plugin_planner::PluginPlanner;
 use super::use_site::UseSite;
-use super::{FixtureBody, FixturePlan, defaults};
+use super::{FixturePlan, added_fixture};
 use crate::suite::{DeclaredEffect, DeclaredFault, DeclaredTarget, SourceText};
 
 /// The name of the fixture: tests find its value `socket`.
@@ -74,19 +72,7 @@ pub(super) fn plan(
     let Some(plugin) = planner.plan_built_in(&FAULTS, source.name(), (param, args), &site) else {
         return;
     };
-    fixtures.push(FixturePlan {
-        id: FixtureId(0),
-        name: NAME.to_owned(),
-        provides: Vec::new(),
-        depends: (0..fixtures.len()).collect(),
-        body: FixtureBody::Plugin(plugin),
-        env: Vec::new(),
-        limits: defaults::FIXTURE,
-        reset: None,
-        restarts: defaults::RESTARTS,
-        restart_delay: defaults::RESTART_DELAY,
-        check_every: None,
-    });
+    fixtures.push(added_fixture::plan(NAME.to_owned(), plugin, fixtures));
 }
 
 /// Directories are arguments of the plug-in, in which references are replaced when it starts.
