@@ -6,7 +6,6 @@ use toml::de::{DeTable, DeValue};
 use super::toml_value::{TomlReader, TomlValue, span};
 use crate::select::{self, Filter};
 use crate::suite::{DeclaredKnownFailure, SourceText, Span, Spanned, parse_day, parse_verdict};
-use crate::wording::{nearest, quoted};
 
 pub(super) const QUARANTINE: &str = "quarantine";
 
@@ -85,7 +84,7 @@ fn read_table(
                 has_filter |= name == "filter";
                 reader.wrong(&whole, value, "a text");
             }
-            _ => unknown_key(reader, name, span(key)),
+            _ => reader.unknown(key, &format!("{QUARANTINE}."), "", &KEYS),
         }
     }
     if !has_filter {
@@ -145,15 +144,4 @@ fn relocate(source: &SourceText, whole: Span, text: &str, label: &Label) -> Labe
         None => whole,
     };
     source.label(span, label.text.clone())
-}
-
-fn unknown_key(reader: &mut TomlReader<'_>, name: &str, span: Span) {
-    let problem = reader
-        .source
-        .error("unknown-key", span, format!("unknown key `{QUARANTINE}.{name}`"))
-        .note(format!("the keys are {}", quoted(KEYS, ", ")));
-    reader.problems.push(match nearest(name, KEYS.into_iter()) {
-        Some(near) => problem.hint(format!("did you mean `{near}`?")),
-        None => problem,
-    });
 }

@@ -12,7 +12,7 @@ use super::limit::{DeclaredLimit, Input, Quantity};
 use super::model::Model;
 use super::{CompiledEnvelope, EnvelopeMonitor, EnvelopeRequest};
 use crate::suite::{SourceText, Span, Spanned};
-use crate::wording::{quoted, suggest};
+use crate::wording::{quoted, suggest, suggest_or};
 
 /// Compiles a file of limits.
 pub(super) struct Compiler<'a> {
@@ -152,8 +152,8 @@ impl Compiler<'_> {
     }
 
     fn incomplete(&self, span: Span, what: &str, hint: &str, problems: &mut Vec<Diagnostic>) {
-        let problem = Diagnostic::error("incomplete", format!("the limit needs {what}"));
-        problems.push(problem.label(self.source.label(span, "")).hint(hint));
+        let message = format!("the limit needs {what}");
+        problems.push(self.source.error("incomplete", span, message).hint(hint));
     }
 
     /// The signal that the file names for all joints.
@@ -247,11 +247,9 @@ impl Compiler<'_> {
                 return;
             }
             let known = self.request.signals.iter().map(|signal| signal.name.value.as_str());
-            let problem = suggest(problem, &signal.value, known);
-            problems.push(match &problem.hint {
-                Some(_) => problem,
-                None => problem.hint("declare it with `<signal>` in the suite"),
-            });
+            problems.push(suggest_or(problem, &signal.value, known, |problem| {
+                problem.hint("declare it with `<signal>` in the suite")
+            }));
             return;
         };
         let before = problems.len();
@@ -291,10 +289,7 @@ impl Compiler<'_> {
         let message = format!("`{}`: {message}", limit.name);
         let problem = Diagnostic::error("unit-mismatch", message);
         let problem = problem.label(self.source.label(at, ""));
-        let problem = match hint {
-            Some(hint) => problem.hint(hint),
-            None => problem,
-        };
+        let problem = Diagnostic { hint, ..problem };
         if !problems.contains(&problem) {
             problems.push(problem);
         }

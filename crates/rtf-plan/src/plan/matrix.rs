@@ -119,12 +119,9 @@ impl<'a> MatrixExpander<'a> {
                 if let Some(known) = self.tables.get(&file.value) {
                     return known.clone().map(|table| (table, file.span));
                 }
-                let label = self.source.label(file.span, "");
                 let found = read_table(self.dir, &file.value);
-                self.problems.extend(found.problems.into_iter().map(|problem| {
-                    let is_located = !problem.labels.is_empty();
-                    if is_located { problem } else { problem.label(label.clone()) }
-                }));
+                let problems = found.problems.into_iter();
+                self.problems.extend(problems.map(|it| self.source.locate(it, file.span)));
                 found.source.into_iter().for_each(|source| self.sources.add(source));
                 let table = found.table.map(Rc::new);
                 self.tables.insert(file.value.clone(), table.clone());

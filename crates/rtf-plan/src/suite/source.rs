@@ -94,6 +94,12 @@ impl SourceText {
         Diagnostic::error(code, message).label(self.label(span, ""))
     }
 
+    /// Adds a place to a problem without one.
+    #[must_use]
+    pub fn locate(&self, problem: Diagnostic, span: Span) -> Diagnostic {
+        if problem.labels.is_empty() { problem.label(self.label(span, "")) } else { problem }
+    }
+
     /// Returns a warning at a place that needs no explanation.
     #[must_use]
     pub fn warning(&self, code: &str, span: Span, message: impl Into<String>) -> Diagnostic {
