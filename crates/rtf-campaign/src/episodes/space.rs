@@ -17,8 +17,9 @@ pub(super) const MAX_COMBINATIONS: u64 = 1_000_000;
 /// The parameters, in the order of the file.
 pub(super) struct Space<'a> {
     dimensions: Vec<Dimension<'a>>,
-    names: Vec<String>,
-    combinations: u64,
+    pub names: Vec<String>,
+    /// The number of combinations of grids and files; 1 without.
+    pub combinations: u64,
 }
 
 /// An element `<parameter>`.
@@ -79,15 +80,6 @@ impl<'a> Space<'a> {
         (resolution.problems.len() == before).then_some(Self { dimensions, names, combinations })
     }
 
-    pub fn names(&self) -> &[String] {
-        &self.names
-    }
-
-    /// Returns the number of combinations of grids and files; 1 without.
-    pub fn combinations(&self) -> u64 {
-        self.combinations
-    }
-
     /// Returns the values of all parameters.
     pub fn candidate(&mut self, candidate: u64) -> Vec<Value> {
         let mut values = Vec::with_capacity(self.names.len());
@@ -132,12 +124,10 @@ pub(crate) fn table(
     resolution: &mut Resolution<'_>,
 ) -> Option<MatrixTable> {
     let found = read_table(resolution.dir, &file.value);
-    let label = resolution.source.label(file.span, "");
     for problem in found.problems {
-        let is_located = !problem.labels.is_empty();
-        resolution.report(if is_located { problem } else { problem.label(label.clone()) });
+        resolution.report(resolution.source.locate(problem, file.span));
     }
-    resolution.add_source(found.source);
+    found.source.into_iter().for_each(|source| resolution.sources.add(source));
     found.table
 }
 
@@ -193,10 +183,12 @@ fn words<'a>(campaign: &'a Campaign, dimensions: &'a [Dimension<'_>]) -> Vec<(&'
     }
     for parameter in &campaign.parameters {
         if let DeclaredParameter::Sampled {
-            name, distribution: Distribution::Choice(words), ..
+            name,
+            distribution: Distribution::Choice { values },
+            ..
         } = parameter
         {
-            found.extend(words.iter().map(|word| (name.value.as_str(), word.as_str())));
+            found.extend(values.iter().map(|word| (name.value.as_str(), word.as_str())));
         }
     }
     found

@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use roxmltree::Node;
-use rtf_model::Diagnostic;
 use rtf_plan::suite::{ElementReader, Span, Spanned};
 
 mod parser;

@@ -49,10 +49,7 @@ struct Children {
 
 fn read(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> Option<Campaign> {
     check(reader, root, &schema::CAMPAIGN);
-    let suite = reader.word(root, "suite");
-    if !root.has_attribute("suite") {
-        reader.missing(root, "the attribute `suite`");
-    }
+    let suite = reader.required(root, "suite", "");
     let mut children = Children::default();
     for node in root.children().filter(Node::is_element) {
         read_child(reader, node, &mut children);
@@ -119,10 +116,6 @@ fn check_episodes(reader: &mut ElementReader<'_>, campaign: &Campaign) {
     }
     let problem =
         reader.error("incomplete", campaign.span, "`<campaign>` needs the attribute `episodes`");
-    reader.report(match sampled {
-        Some(sampled) => {
-            problem.label(reader.source.label(sampled.span(), "has any number of values"))
-        }
-        None => problem,
-    });
+    let label = |it: &DeclaredParameter| reader.source.label(it.span(), "has any number of values");
+    reader.report(sampled.map(label).into_iter().fold(problem, Diagnostic::label));
 }

@@ -29,37 +29,25 @@ pub enum StoppingRule {
     },
 }
 
-/// The value of `rule`.
-#[derive(Clone, Copy)]
-enum Rule {
-    Fixed,
-    ConfidenceSequence,
-    Sprt,
-}
-
-const RULES: [(&str, Rule); 3] = [
-    ("fixed", Rule::Fixed),
-    ("confidence-sequence", Rule::ConfidenceSequence),
-    ("sprt", Rule::Sprt),
+/// The values of `rule`; `None` for the one with further attributes.
+const RULES: [(&str, Option<StoppingRule>); 3] = [
+    ("fixed", Some(StoppingRule::Fixed)),
+    ("confidence-sequence", Some(StoppingRule::ConfidenceSequence)),
+    ("sprt", None),
 ];
 
 /// Reads the `<stop>`; `None` if it is invalid, which is reported.
 pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<StoppingRule> {
-    let Some(rule) = reader.choice(node, "rule", &RULES) else {
-        check(reader, node, &schema::SPRT);
-        if !node.has_attribute("rule") {
-            reader.missing(node, "the attribute `rule`");
-        }
-        return None;
-    };
-    let Rule::Sprt = rule else {
+    let rule = reader.choice(node, "rule", &RULES);
+    if let Some(Some(rule)) = rule {
         check(reader, node, &schema::STOP);
-        return Some(match rule {
-            Rule::ConfidenceSequence => StoppingRule::ConfidenceSequence,
-            _ => StoppingRule::Fixed,
-        });
-    };
+        return Some(rule);
+    }
     check(reader, node, &schema::SPRT);
+    if !node.has_attribute("rule") {
+        reader.missing(node, "the attribute `rule`");
+    }
+    rule?;
     let [low, high] = ["low", "high"].map(|name| real::between_zero_and(reader, node, name, 1.0));
     let [alpha, beta] =
         ["alpha", "beta"].map(|name| real::between_zero_and(reader, node, name, 0.5));
