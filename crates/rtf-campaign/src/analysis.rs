@@ -7,6 +7,7 @@ use rtf_model::{Episode, Parameter};
 use rtf_statistics::{CONFIDENCE, RandomStream, Rate, rate, strata};
 use serde::Serialize;
 
+use crate::episodes::sampler::number_of;
 use crate::{EpisodeResult, Ledger};
 
 /// A parameter with more different numbers is divided into bins.
@@ -156,7 +157,7 @@ struct Axis {
 impl Axis {
     fn new(samples: &[Sample<'_>], name: &str) -> Self {
         let values: Vec<&str> = samples.iter().filter_map(|(it, _)| value(it, name)).collect();
-        let numbers: Option<Vec<f64>> = values.iter().map(|text| number(text)).collect();
+        let numbers: Option<Vec<f64>> = values.iter().map(|text| number_of(text)).collect();
         let words: BTreeMap<_, _> = values.iter().map(|text| (sort_key(text), *text)).collect();
         match numbers {
             Some(numbers) if words.len() > MAX_WORDS => {
@@ -180,7 +181,7 @@ impl Axis {
         let text = value(episode, &self.name).unwrap_or_default();
         match &self.ends {
             Some(ends) => {
-                let number = number(text).unwrap_or_default();
+                let number = number_of(text).unwrap_or_default();
                 ends.partition_point(|end| *end <= number)
             }
             None => self.labels.iter().position(|label| label == text).unwrap_or_default(),
@@ -193,13 +194,9 @@ fn value<'a>(episode: &'a Episode, name: &str) -> Option<&'a str> {
     episode.parameters.iter().find(is_named).map(|parameter| parameter.value.as_str())
 }
 
-fn number(text: &str) -> Option<f64> {
-    text.parse().ok().filter(|number: &f64| number.is_finite())
-}
-
 /// Numbers in their order, then words.
 fn sort_key(text: &str) -> (bool, u64, &str) {
-    match number(text) {
+    match number_of(text) {
         Some(number) => {
             let bits = number.to_bits();
             let ordered = if number.is_sign_negative() { !bits } else { bits | (1 << 63) };

@@ -12,39 +12,17 @@ use crate::file::{DeclaredParameter, Distribution};
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ParameterRange {
     pub name: String,
+    /// Of words, each once, in the order of the file.
     #[serde(flatten)]
-    pub values: Values,
+    pub values: Distribution,
     pub nominal: String,
-}
-
-/// The values of a parameter.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum Values {
-    /// Words, in the order of the file, each once.
-    Words {
-        /// The words.
-        values: Vec<String>,
-    },
-    /// Numbers between two others.
-    Uniform {
-        /// The lowest value.
-        low: f64,
-        /// The highest value.
-        high: f64,
-    },
-    Normal {
-        mean: f64,
-        /// The standard deviation.
-        deviation: f64,
-    },
 }
 
 impl ParameterRange {
     /// Whether the values are any numbers in a range.
     #[must_use]
     pub fn is_real(&self) -> bool {
-        !matches!(self.values, Values::Words { .. })
+        !matches!(self.values, Distribution::Choice { .. })
     }
 }
 
@@ -81,7 +59,7 @@ fn of_words(name: &str, words: &[String], nominal: Option<&String>) -> Parameter
         }
     }
     let nominal = nominal.or(words.first()).cloned().unwrap_or_default();
-    ParameterRange { name: name.to_owned(), values: Values::Words { values }, nominal }
+    ParameterRange { name: name.to_owned(), values: Distribution::Choice { values }, nominal }
 }
 
 fn of_distribution(
@@ -89,15 +67,13 @@ fn of_distribution(
     distribution: &Distribution,
     nominal: Option<&String>,
 ) -> ParameterRange {
-    let (values, middle) = match *distribution {
-        Distribution::Choice(ref words) => return of_words(name, words, nominal),
-        Distribution::Uniform { low, high } => {
-            (Values::Uniform { low, high }, low + (high - low) / 2.0)
-        }
-        Distribution::Normal { mean, deviation } => (Values::Normal { mean, deviation }, mean),
+    let middle = match distribution {
+        Distribution::Choice { values } => return of_words(name, values, nominal),
+        Distribution::Uniform { low, high } => low + (high - low) / 2.0,
+        Distribution::Normal { mean, .. } => *mean,
     };
     let nominal = nominal.cloned().unwrap_or_else(|| text_of(middle));
-    ParameterRange { name: name.to_owned(), values, nominal }
+    ParameterRange { name: name.to_owned(), values: distribution.clone(), nominal }
 }
 
 #[must_use]

@@ -8,6 +8,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::episodes::sampler::number_of;
+
 /// Bisection ends when the distance between a value that fails and one that does not is this
 /// part of the distance between the episode's and the nominal value.
 const PRECISION: f64 = 1.0 / 64.0;
@@ -201,16 +203,15 @@ fn between(passes: &str, fails: &str, change: &Change) -> Option<String> {
     if !change.is_real {
         return None;
     }
-    let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite());
-    let (low, high) = (number(passes)?, number(fails)?);
-    let whole = (number(&change.value)? - number(&change.nominal)?).abs();
+    let (low, high) = (number_of(passes)?, number_of(fails)?);
+    let whole = (number_of(&change.value)? - number_of(&change.nominal)?).abs();
     let distance = (high - low).abs();
     if distance <= whole * PRECISION {
         return None;
     }
     let middle = low + (high - low) / 2.0;
     let is_near =
-        |text: &String| number(text).is_some_and(|it| (it - middle).abs() < distance / 4.0);
+        |text: &String| number_of(text).is_some_and(|it| (it - middle).abs() < distance / 4.0);
     let decimals = (0..17).map(|decimals| format!("{middle:.decimals$}"));
     let text = decimals.filter(is_near).map(|text| plain(&text)).next();
     text.or_else(|| Some(middle.to_string())).filter(|text| text != passes && text != fails)

@@ -1,5 +1,7 @@
 //! Placeholders in the texts of a suite: `${port:name}`, `${param:name}`.
 
+use std::borrow::Cow;
+
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Segment<'a> {
     /// Literal text.
@@ -34,4 +36,25 @@ pub(crate) fn segments<'a>(text: &'a str, open: &'static str) -> Vec<Segment<'a>
     }
     segments.push(Segment::Text(&text[done..]));
     segments
+}
+
+/// Replaces each placeholder by the result of `value`, which gets its name. One without a result is
+/// kept.
+pub(crate) fn replace<'v>(
+    text: &str,
+    open: &'static str,
+    mut value: impl FnMut(&str) -> Option<Cow<'v, str>>,
+) -> String {
+    let mut replaced = String::with_capacity(text.len());
+    for segment in segments(text, open) {
+        match segment {
+            Segment::Text(text) => replaced += text,
+            Segment::Placeholder(name, start) => match value(name) {
+                Some(value) => replaced += &value,
+                None => replaced += &text[start..start + open.len() + name.len() + 1],
+            },
+            Segment::Unclosed(start) => replaced += &text[start..],
+        }
+    }
+    replaced
 }

@@ -18,9 +18,19 @@ pub(crate) fn suggest<'a>(
     word: &str,
     known: impl Iterator<Item = &'a str>,
 ) -> Diagnostic {
+    suggest_or(problem, word, known, |problem| problem)
+}
+
+/// The same; `otherwise` completes the problem if no known word resembles `word`.
+pub(crate) fn suggest_or<'a>(
+    problem: Diagnostic,
+    word: &str,
+    known: impl Iterator<Item = &'a str>,
+    otherwise: impl FnOnce(Diagnostic) -> Diagnostic,
+) -> Diagnostic {
     match nearest(word, known) {
         Some(near) => problem.hint(format!("did you mean `{near}`?")),
-        None => problem,
+        None => otherwise(problem),
     }
 }
 

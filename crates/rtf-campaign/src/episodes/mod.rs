@@ -10,7 +10,6 @@ mod sobol;
 pub(crate) mod space;
 
 use std::path::Path;
-use std::sync::Arc;
 
 use rtf_model::{Diagnostic, Episode, Parameter};
 use rtf_plan::suite::{SourceMap, SourceText};
@@ -38,10 +37,6 @@ impl Resolution<'_> {
     fn report(&mut self, problem: Diagnostic) {
         self.problems.push(problem);
     }
-
-    fn add_source(&mut self, source: Option<Arc<SourceText>>) {
-        source.into_iter().for_each(|source| self.sources.add(source));
-    }
 }
 
 /// Makes the list of episodes. `None` if there is an error, which is reported.
@@ -51,15 +46,14 @@ pub fn resolve(campaign: &Campaign, resolution: &mut Resolution<'_>) -> Option<E
     // Without a number of episodes, each combination is one.
     let (wanted, most) = match campaign.episodes {
         Some(episodes) => (u64::from(episodes), u64::from(episodes) * MAX_CANDIDATES),
-        None => (space.combinations(), space.combinations()),
+        None => (space.combinations, space.combinations),
     };
     if let Some(episodes) = campaign.episodes
-        && u64::from(episodes) < space.combinations()
+        && u64::from(episodes) < space.combinations
     {
-        let combinations = space.combinations();
+        let combinations = space.combinations;
         let message = format!("only {episodes} of {combinations} combinations have an episode");
-        let problem = Diagnostic::warning("few-episodes", message)
-            .label(resolution.source.label(campaign.span, ""));
+        let problem = resolution.source.warning("few-episodes", campaign.span, message);
         resolution.report(problem.hint("use `choice` for a random selection"));
     }
     let mut seeds = SeedStream::new(campaign.seed);
@@ -72,7 +66,7 @@ pub fn resolve(campaign: &Campaign, resolution: &mut Resolution<'_>) -> Option<E
         if !space.allows(campaign, &values) {
             continue;
         }
-        let names = space.names().iter().cloned();
+        let names = space.names.iter().cloned();
         let parameters =
             names.zip(values).map(|(name, (value, _))| Parameter { name, value }).collect();
         let seed = seeds.seed(candidate);
@@ -122,7 +116,6 @@ fn report_constraints(
 /// Reports more combinations than a list may have.
 fn report_size(campaign: &Campaign, resolution: &mut Resolution<'_>) {
     let message = format!("the campaign has more than {MAX_COMBINATIONS} combinations");
-    let problem = Diagnostic::error("too-many-combinations", message)
-        .label(resolution.source.label(campaign.span, ""));
+    let problem = resolution.source.error("too-many-combinations", campaign.span, message);
     resolution.report(problem.hint("sample some parameters: `distribution=\"choice\"`"));
 }

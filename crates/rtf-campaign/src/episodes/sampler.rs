@@ -66,7 +66,7 @@ impl<'a> Sampler<'a> {
     pub fn value(&mut self, candidate: u64) -> Value {
         let unit = self.source.unit(candidate);
         let number = match self.distribution {
-            Distribution::Choice(words) => return word(words, unit),
+            Distribution::Choice { values } => return word(values, unit),
             Distribution::Uniform { low, high } => low + unit * (high - low),
             Distribution::Normal { mean, deviation } => mean + deviation * normal_quantile(unit),
         };

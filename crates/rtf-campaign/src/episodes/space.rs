@@ -17,8 +17,9 @@ pub(super) const MAX_COMBINATIONS: u64 = 1_000_000;
 /// The parameters, in the order of the file.
 pub(super) struct Space<'a> {
     dimensions: Vec<Dimension<'a>>,
-    names: Vec<String>,
-    combinations: u64,
+    pub names: Vec<String>,
+    /// The number of combinations of grids and files; 1 without.
+    pub combinations: u64,
 }
 
 /// An element `<parameter>`.
@@ -50,8 +51,11 @@ impl<'a> Space<'a> {
                     let campaign = (campaign.seed, campaign.episodes.unwrap_or(1));
                     let Some(sampler) = Sampler::new(of, campaign, &mut sobol_dimensions) else {
                         let message = format!("more than {DIMENSIONS} parameters are `sobol`");
-                        let label = resolution.source.label(name.span, "");
-                        resolution.report(Diagnostic::error("invalid-value", message).label(label));
+                        resolution.report(resolution.source.error(
+                            "invalid-value",
+                            name.span,
+                            message,
+                        ));
                         continue;
                     };
                     names.push((name.value.clone(), name.span));
@@ -74,15 +78,6 @@ impl<'a> Space<'a> {
         }
         let names = names.into_iter().map(|(name, _)| name).collect();
         (resolution.problems.len() == before).then_some(Self { dimensions, names, combinations })
-    }
-
-    pub fn names(&self) -> &[String] {
-        &self.names
-    }
-
-    /// Returns the number of combinations of grids and files; 1 without.
-    pub fn combinations(&self) -> u64 {
-        self.combinations
     }
 
     /// Returns the values of all parameters.
@@ -129,12 +124,10 @@ pub(crate) fn table(
     resolution: &mut Resolution<'_>,
 ) -> Option<MatrixTable> {
     let found = read_table(resolution.dir, &file.value);
-    let label = resolution.source.label(file.span, "");
     for problem in found.problems {
-        let is_located = !problem.labels.is_empty();
-        resolution.report(if is_located { problem } else { problem.label(label.clone()) });
+        resolution.report(resolution.source.locate(problem, file.span));
     }
-    resolution.add_source(found.source);
+    found.source.into_iter().for_each(|source| resolution.sources.add(source));
     found.table
 }
 
@@ -143,8 +136,9 @@ fn check_names(names: &[(String, Span)], resolution: &mut Resolution<'_>) {
     for (index, (name, span)) in names.iter().enumerate() {
         let is_same = |(other, _): &&(String, Span)| variable(other) == variable(name);
         let Some((other, first)) = names[..index].iter().find(is_same) else { continue };
-        let problem = Diagnostic::error("duplicate-name", describe_same_variable(other, name))
-            .label(resolution.source.label(*span, ""))
+        let problem = resolution
+            .source
+            .error("duplicate-name", *span, describe_same_variable(other, name))
             .label(resolution.source.label(*first, "the first one"));
         resolution.report(problem);
     }
@@ -189,10 +183,12 @@ fn words<'a>(campaign: &'a Campaign, dimensions: &'a [Dimension<'_>]) -> Vec<(&'
     }
     for parameter in &campaign.parameters {
         if let DeclaredParameter::Sampled {
-            name, distribution: Distribution::Choice(words), ..
+            name,
+            distribution: Distribution::Choice { values },
+            ..
         } = parameter
         {
-            found.extend(words.iter().map(|word| (name.value.as_str(), word.as_str())));
+            found.extend(values.iter().map(|word| (name.value.as_str(), word.as_str())));
         }
     }
     found

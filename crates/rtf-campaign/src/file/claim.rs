@@ -21,10 +21,7 @@ pub struct Claim {
 /// Reads the `<claim>`; `None` if it is invalid, which is reported.
 pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Claim> {
     check(reader, node, &schema::CLAIM);
-    let require = reader.word(node, "require");
-    if !node.has_attribute("require") {
-        reader.missing(node, "the attribute `require`: `rate >= 0.95`");
-    }
+    let require = reader.required(node, "require", ": `rate >= 0.95`");
     let has_confidence = node.has_attribute("confidence");
     let confidence =
         if has_confidence { real::between_zero_and(reader, node, "confidence", 1.0) } else { None };

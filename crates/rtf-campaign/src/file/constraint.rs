@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use roxmltree::Node;
-use rtf_model::Diagnostic;
 use rtf_plan::suite::{ElementReader, Span, Spanned};
 
 mod parser;
@@ -113,8 +112,8 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option
         }
         Err(error) => {
             let message = format!("`require` is not a comparison: {}", error.message);
-            let problem = Diagnostic::error("invalid-value", message)
-                .label(reader.source.label(span(error.at), ""))
+            let problem = reader
+                .error("invalid-value", span(error.at), message)
                 .hint("write it like `payload + 0.5 * reach <= 2` (`<` in XML: `&lt;`)");
             reader.report(problem);
             None

@@ -4,6 +4,7 @@ use roxmltree::Node;
 use rtf_model::Diagnostic;
 use rtf_plan::suite::schema::check;
 use rtf_plan::suite::{ElementReader, Span, Spanned, matrix};
+use serde::Serialize;
 
 use super::{real, schema};
 
@@ -37,10 +38,15 @@ pub enum Design {
     Sobol,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+/// The values of a parameter, and how probable they are.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Distribution {
     /// One of these words, each with the same probability.
-    Choice(Vec<String>),
+    Choice {
+        /// The words.
+        values: Vec<String>,
+    },
     /// A number between these.
     Uniform {
         /// The lowest value.
@@ -106,10 +112,7 @@ pub(super) fn read(
     };
     check(reader, node, known(kind));
     if kind == Kind::File {
-        if !node.has_attribute("file") {
-            reader.missing(node, "the attribute `file`");
-        }
-        return reader.word(node, "file").map(DeclaredParameter::File);
+        return reader.required(node, "file", "").map(DeclaredParameter::File);
     }
     let name = name(reader, node);
     if kind == Kind::Grid {
@@ -118,7 +121,7 @@ pub(super) fn read(
     }
     let distribution = distribution(reader, node, kind);
     let design = if let Kind::Design(design) = kind { design } else { Design::Independent };
-    let is_word = matches!(distribution, Some(Distribution::Choice(_)));
+    let is_word = matches!(distribution, Some(Distribution::Choice { .. }));
     let nominal = nominal(reader, node, is_word);
     let (name, distribution, nominal) = (name?, distribution?, nominal?);
     Some(DeclaredParameter::Sampled { name, design, distribution, nominal })
@@ -151,10 +154,7 @@ fn known(kind: Kind) -> &'static rtf_plan::suite::schema::ElementSchema {
 }
 
 fn name(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Spanned<String>> {
-    if !node.has_attribute("name") {
-        reader.missing(node, "the attribute `name`");
-    }
-    reader.word(node, "name").filter(|name| matrix::check_name(reader, name))
+    reader.required(node, "name", "").filter(|name| matrix::check_name(reader, name))
 }
 
 fn words(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Vec<String>> {
@@ -173,7 +173,7 @@ fn distribution(
     let kind =
         if let Kind::Design(_) = kind { distribution_of_design(reader, node)? } else { kind };
     match kind {
-        Kind::Choice => words(reader, node).map(Distribution::Choice),
+        Kind::Choice => words(reader, node).map(|values| Distribution::Choice { values }),
         Kind::Normal => {
             let mean = real::required(reader, node, "mean");
             let deviation = real::between_zero_and(reader, node, "deviation", f64::INFINITY);

@@ -49,10 +49,7 @@ struct Children {
 
 fn read(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> Option<Campaign> {
     check(reader, root, &schema::CAMPAIGN);
-    let suite = reader.word(root, "suite");
-    if !root.has_attribute("suite") {
-        reader.missing(root, "the attribute `suite`");
-    }
+    let suite = reader.required(root, "suite", "");
     let mut children = Children::default();
     for node in root.children().filter(Node::is_element) {
         read_child(reader, node, &mut children);
@@ -117,12 +114,8 @@ fn check_episodes(reader: &mut ElementReader<'_>, campaign: &Campaign) {
     if sampled.is_none() && !campaign.parameters.is_empty() {
         return;
     }
-    let problem = Diagnostic::error("incomplete", "`<campaign>` needs the attribute `episodes`")
-        .label(reader.source.label(campaign.span, ""));
-    reader.report(match sampled {
-        Some(sampled) => {
-            problem.label(reader.source.label(sampled.span(), "has any number of values"))
-        }
-        None => problem,
-    });
+    let problem =
+        reader.error("incomplete", campaign.span, "`<campaign>` needs the attribute `episodes`");
+    let label = |it: &DeclaredParameter| reader.source.label(it.span(), "has any number of values");
+    reader.report(sampled.map(label).into_iter().fold(problem, Diagnostic::label));
 }

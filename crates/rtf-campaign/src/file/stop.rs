@@ -29,37 +29,25 @@ pub enum StoppingRule {
     },
 }
 
-/// The value of `rule`.
-#[derive(Clone, Copy)]
-enum Rule {
-    Fixed,
-    ConfidenceSequence,
-    Sprt,
-}
-
-const RULES: [(&str, Rule); 3] = [
-    ("fixed", Rule::Fixed),
-    ("confidence-sequence", Rule::ConfidenceSequence),
-    ("sprt", Rule::Sprt),
+/// The values of `rule`; `None` for the one with further attributes.
+const RULES: [(&str, Option<StoppingRule>); 3] = [
+    ("fixed", Some(StoppingRule::Fixed)),
+    ("confidence-sequence", Some(StoppingRule::ConfidenceSequence)),
+    ("sprt", None),
 ];
 
 /// Reads the `<stop>`; `None` if it is invalid, which is reported.
 pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<StoppingRule> {
-    let Some(rule) = reader.choice(node, "rule", &RULES) else {
-        check(reader, node, &schema::SPRT);
-        if !node.has_attribute("rule") {
-            reader.missing(node, "the attribute `rule`");
-        }
-        return None;
-    };
-    let Rule::Sprt = rule else {
+    let rule = reader.choice(node, "rule", &RULES);
+    if let Some(Some(rule)) = rule {
         check(reader, node, &schema::STOP);
-        return Some(match rule {
-            Rule::ConfidenceSequence => StoppingRule::ConfidenceSequence,
-            _ => StoppingRule::Fixed,
-        });
-    };
+        return Some(rule);
+    }
     check(reader, node, &schema::SPRT);
+    if !node.has_attribute("rule") {
+        reader.missing(node, "the attribute `rule`");
+    }
+    rule?;
     let [low, high] = ["low", "high"].map(|name| real::between_zero_and(reader, node, name, 1.0));
     let [alpha, beta] =
         ["alpha", "beta"].map(|name| real::between_zero_and(reader, node, name, 0.5));
@@ -78,14 +66,14 @@ pub(super) fn check_rule(reader: &mut ElementReader<'_>, campaign: &Campaign) {
     match (campaign.stop, &claim.confidence) {
         (StoppingRule::Sprt { .. }, Some(confidence)) => {
             let message = "`confidence` has no effect with `rule=\"sprt\"`";
-            let problem = Diagnostic::error("conflicting-attributes", message)
-                .label(reader.source.label(confidence.span, ""))
+            let problem = reader
+                .error("conflicting-attributes", confidence.span, message)
                 .hint("`alpha` and `beta` are the error rates");
             reader.report(problem);
         }
         (StoppingRule::Fixed | StoppingRule::ConfidenceSequence, None) => {
-            let problem = Diagnostic::error("incomplete", "the claim needs a confidence")
-                .label(reader.source.label(claim.span, ""))
+            let problem = reader
+                .error("incomplete", claim.span, "the claim needs a confidence")
                 .hint("add `confidence=\"0.95\"` to `<claim>`");
             reader.report(problem);
         }
@@ -95,8 +83,7 @@ pub(super) fn check_rule(reader: &mut ElementReader<'_>, campaign: &Campaign) {
         && !(low..=high).contains(&claim.rate)
     {
         let message = format!("the claimed rate is not between `low`, {low}, and `high`, {high}");
-        let label = reader.source.label(claim.span, "");
-        reader.report(Diagnostic::error("invalid-value", message).label(label));
+        reader.report(reader.error("invalid-value", claim.span, message));
     }
     if campaign.stop != StoppingRule::Fixed {
         let dependent = |parameter: &&DeclaredParameter| !parameter.is_independent();

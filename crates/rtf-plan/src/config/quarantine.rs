@@ -6,7 +6,6 @@ use toml::de::{DeTable, DeValue};
 use super::toml_value::{TomlReader, TomlValue, span};
 use crate::select::{self, Filter};
 use crate::suite::{DeclaredKnownFailure, SourceText, Span, Spanned, parse_day, parse_verdict};
-use crate::wording::{nearest, quoted};
 
 pub(super) const QUARANTINE: &str = "quarantine";
 
@@ -85,12 +84,13 @@ fn read_table(
                 has_filter |= name == "filter";
                 reader.wrong(&whole, value, "a text");
             }
-            _ => unknown_key(reader, name, span(key)),
+            _ => reader.unknown(key, &format!("{QUARANTINE}."), "", &KEYS),
         }
     }
     if !has_filter {
-        let problem = Diagnostic::error("incomplete", "a `[[quarantine]]` needs a `filter`")
-            .label(reader.source.label(span(value), ""))
+        let problem = reader
+            .source
+            .error("incomplete", span(value), "a `[[quarantine]]` needs a `filter`")
             .hint("for example `filter = \"name(=Grasp)\"`");
         reader.problems.push(problem);
     }
@@ -144,14 +144,4 @@ fn relocate(source: &SourceText, whole: Span, text: &str, label: &Label) -> Labe
         None => whole,
     };
     source.label(span, label.text.clone())
-}
-
-fn unknown_key(reader: &mut TomlReader<'_>, name: &str, span: Span) {
-    let problem = Diagnostic::error("unknown-key", format!("unknown key `{QUARANTINE}.{name}`"))
-        .label(reader.source.label(span, ""))
-        .note(format!("the keys are {}", quoted(KEYS, ", ")));
-    reader.problems.push(match nearest(name, KEYS.into_iter()) {
-        Some(near) => problem.hint(format!("did you mean `{near}`?")),
-        None => problem,
-    });
 }

@@ -8,7 +8,7 @@ use super::quarantine::{self, QUARANTINE, Quarantine};
 use super::toml_value::{TomlKey, TomlReader, TomlValue, is_text, scalar, span};
 use super::unknown_profile::suggest_profile;
 use crate::suite::{SourceText, Span, Spanned, is_reserved, parse_duration};
-use crate::wording::{nearest, quoted};
+use crate::wording::quoted;
 
 /// One value of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,7 +51,7 @@ pub fn parse(source: &SourceText, problems: &mut Vec<Diagnostic>) -> ParsedConfi
     for error in errors {
         let span = Span::new(error.span().unwrap_or_default());
         let message = format!("not TOML: {}", error.message().lines().next().unwrap_or_default());
-        problems.push(Diagnostic::error("not-toml", message).label(source.label(span, "")));
+        problems.push(source.error("not-toml", span, message));
     }
     let mut reader = TomlReader { source, problems };
     let mut parsed = ParsedConfig::default();
@@ -110,7 +110,11 @@ impl TomlReader<'_> {
             return layer.quarantines.extend(found);
         }
         let Some(Key { format: form, .. }) = keys.iter().find(|known| known.name == name) else {
-            return self.unknown(key, prefix, keys);
+            let mut known: Vec<&str> = keys.iter().map(|known| known.name).collect();
+            if prefix.is_empty() {
+                known.extend([QUARANTINE, "profile", "default-profile"]);
+            }
+            return self.unknown(key, prefix, prefix, &known);
         };
         let whole = format!("{prefix}{name}");
         match (form, value.get_ref()) {
@@ -230,22 +234,6 @@ impl TomlReader<'_> {
             }
             None => self.wrong(&whole, value, "a text, a number, `true` or `false`"),
         }
-    }
-
-    fn unknown(&mut self, key: &TomlKey<'_>, prefix: &str, keys: &[Key]) {
-        let name = key.get_ref().as_ref();
-        let mut known: Vec<&str> = keys.iter().map(|known| known.name).collect();
-        if prefix.is_empty() {
-            known.extend([QUARANTINE, "profile", "default-profile"]);
-        }
-        let label = self.source.label(span(key), "");
-        let problem = Diagnostic::error("unknown-key", format!("unknown key `{prefix}{name}`"))
-            .label(label)
-            .note(format!("the keys are {}", quoted(known.iter().copied(), ", ")));
-        self.problems.push(match nearest(name, known.into_iter()) {
-            Some(near) => problem.hint(format!("did you mean `{prefix}{near}`?")),
-            None => problem,
-        });
     }
 
     fn check_default_profile(

@@ -4,6 +4,7 @@ use rtf_model::Diagnostic;
 use toml::de::DeValue;
 
 use crate::suite::{SourceText, Span};
+use crate::wording::{nearest, quoted};
 
 pub(super) type TomlKey<'a> = toml::Spanned<toml::de::DeString<'a>>;
 pub(super) type TomlValue<'a> = toml::Spanned<DeValue<'a>>;
@@ -19,6 +20,19 @@ impl TomlReader<'_> {
     pub fn wrong(&mut self, key: &str, value: &TomlValue<'_>, expected: &str) {
         let problem = Diagnostic::error("invalid-value", format!("`{key}` has to be {expected}"));
         self.problems.push(problem.label(self.source.label(span(value), "")));
+    }
+
+    /// Reports a key of a table that `prefix` names. Hints name keys after `hint_prefix`.
+    pub fn unknown(&mut self, key: &TomlKey<'_>, prefix: &str, hint_prefix: &str, known: &[&str]) {
+        let name = key.get_ref().as_ref();
+        let message = format!("unknown key `{prefix}{name}`");
+        let list = quoted(known.iter().copied(), ", ");
+        let problem = self.source.error("unknown-key", span(key), message);
+        let problem = problem.note(format!("the keys are {list}"));
+        self.problems.push(match nearest(name, known.iter().copied()) {
+            Some(near) => problem.hint(format!("did you mean `{hint_prefix}{near}`?")),
+            None => problem,
+        });
     }
 }
 

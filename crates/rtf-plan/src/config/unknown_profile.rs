@@ -2,7 +2,7 @@
 
 use rtf_model::Diagnostic;
 
-use crate::wording::{quoted, suggest};
+use crate::wording::{quoted, suggest_or};
 
 /// Adds a hint with the most similar profile, or with all known ones.
 pub(super) fn suggest_profile<'a>(
@@ -13,12 +13,8 @@ pub(super) fn suggest_profile<'a>(
     let mut known: Vec<&str> = known.collect();
     known.sort_unstable();
     known.dedup();
-    let problem = suggest(problem, name, known.iter().copied());
-    if problem.hint.is_some() {
-        problem
-    } else if known.is_empty() {
-        problem.hint("a profile is a table `[profile.NAME]`")
-    } else {
-        problem.hint(format!("the profiles are {}", quoted(known, ", ")))
-    }
+    suggest_or(problem, name, known.iter().copied(), |problem| match known.is_empty() {
+        true => problem.hint("a profile is a table `[profile.NAME]`"),
+        false => problem.hint(format!("the profiles are {}", quoted(known.iter().copied(), ", "))),
+    })
 }

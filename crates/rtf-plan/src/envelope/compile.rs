@@ -12,7 +12,7 @@ use super::limit::{DeclaredLimit, Input, Quantity};
 use super::model::Model;
 use super::{CompiledEnvelope, EnvelopeMonitor, EnvelopeRequest};
 use crate::suite::{SourceText, Span, Spanned};
-use crate::wording::{quoted, suggest};
+use crate::wording::{quoted, suggest, suggest_or};
 
 /// Compiles a file of limits.
 pub(super) struct Compiler<'a> {
@@ -64,9 +64,8 @@ impl Compiler<'_> {
         let has_errors = problems.iter().any(|problem| problem.severity == Severity::Error);
         if monitors.is_empty() && !has_errors {
             let message = format!("`{}` limits nothing", self.source.name());
-            let label = self.source.label(Span::new(0..0), "");
             let hint = "write limits, or `model` and `signals`";
-            problems.push(Diagnostic::error("incomplete", message).label(label).hint(hint));
+            problems.push(self.source.error("incomplete", Span::new(0..0), message).hint(hint));
         }
         compiled.monitors = monitors;
     }
@@ -84,8 +83,9 @@ impl Compiler<'_> {
             }
             let known = || model.joints.iter().map(|joint| joint.name.as_str());
             let message = format!("`{}` has no joint `{}` that moves", model.file, name.value);
-            let problem = Diagnostic::error("unknown-joint", message)
-                .label(self.source.label(name.span, ""))
+            let problem = self
+                .source
+                .error("unknown-joint", name.span, message)
                 .note(format!("its joints are {}", quoted(known(), ", ")));
             problems.push(suggest(problem, &name.value, known()));
         }
@@ -152,8 +152,8 @@ impl Compiler<'_> {
     }
 
     fn incomplete(&self, span: Span, what: &str, hint: &str, problems: &mut Vec<Diagnostic>) {
-        let problem = Diagnostic::error("incomplete", format!("the limit needs {what}"));
-        problems.push(problem.label(self.source.label(span, "")).hint(hint));
+        let message = format!("the limit needs {what}");
+        problems.push(self.source.error("incomplete", span, message).hint(hint));
     }
 
     /// The signal that the file names for all joints.
@@ -236,11 +236,10 @@ impl Compiler<'_> {
     /// Reports an unknown signal, units that do not match, and an empty range.
     fn check(&self, limit: &Limit, problems: &mut Vec<Diagnostic>) {
         let signal = limit.input.signal();
-        let label = self.source.label(signal.span, "");
         let Some(declared) = self.request.signals.iter().find(|it| it.name.value == signal.value)
         else {
             let message = format!("there is no signal `{}`", signal.value);
-            let problem = Diagnostic::error("unknown-signal", message).label(label);
+            let problem = self.source.error("unknown-signal", signal.span, message);
             if limit.span.is_none() {
                 let hint =
                     "declare it with `<signal>` in the suite, or write its joint in `ignore`";
@@ -248,11 +247,9 @@ impl Compiler<'_> {
                 return;
             }
             let known = self.request.signals.iter().map(|signal| signal.name.value.as_str());
-            let problem = suggest(problem, &signal.value, known);
-            problems.push(match &problem.hint {
-                Some(_) => problem,
-                None => problem.hint("declare it with `<signal>` in the suite"),
-            });
+            problems.push(suggest_or(problem, &signal.value, known, |problem| {
+                problem.hint("declare it with `<signal>` in the suite")
+            }));
             return;
         };
         let before = problems.len();
@@ -267,13 +264,11 @@ impl Compiler<'_> {
         if min.unit != max.unit {
             if self.file.factor.is_some_and(|factor| factor < 1.0) {
                 let message = "`factor` needs the same unit for `min` and `max`";
-                let label = self.source.label(at, "");
-                problems.push(Diagnostic::error("unit-mismatch", message).label(label));
+                problems.push(self.source.error("unit-mismatch", at, message));
             }
         } else if min.value > max.value {
             let message = format!("`min` is above `max`: {} > {}", min.constant(), max.constant());
-            let label = self.source.label(at, "");
-            problems.push(Diagnostic::error("empty-range", message).label(label));
+            problems.push(self.source.error("empty-range", at, message));
         }
     }
 
@@ -294,10 +289,7 @@ impl Compiler<'_> {
         let message = format!("`{}`: {message}", limit.name);
         let problem = Diagnostic::error("unit-mismatch", message);
         let problem = problem.label(self.source.label(at, ""));
-        let problem = match hint {
-            Some(hint) => problem.hint(hint),
-            None => problem,
-        };
+        let problem = Diagnostic { hint, ..problem };
         if !problems.contains(&problem) {
             problems.push(problem);
         }

@@ -1,10 +1,8 @@
 //! The keys of a file of limits.
 
-use std::time::Duration;
-
 use rtf_model::{Diagnostic, FindingSeverity};
 
-use super::bound::{Bound, Bounds};
+use super::bound::Bound;
 use super::limit::{DeclaredLimit, Input, Quantity};
 use super::patch::PROFILES;
 use super::yaml::{Node, Value};
@@ -85,7 +83,7 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn report(&mut self, code: &str, span: Span, message: String) {
-        self.problems.push(Diagnostic::error(code, message).label(self.source.label(span, "")));
+        self.problems.push(self.source.error(code, span, message));
     }
 
     fn wrong(&mut self, name: &str, node: &Node, expected: &str) {
@@ -134,14 +132,27 @@ impl Reader<'_> {
         known
     }
 
-    fn text(&mut self, name: &str, node: &Node) -> Option<Spanned<String>> {
-        match &node.value {
-            Value::Text(text) if is_name(text) => Some(Spanned::new(text.clone(), node.span)),
-            _ => {
-                self.wrong(name, node, "a text without control characters");
-                None
-            }
+    /// Reads a text that `parse` accepts, and reports another value.
+    fn parsed<T>(
+        &mut self,
+        name: &str,
+        node: &Node,
+        parse: impl FnOnce(&str) -> Option<T>,
+        expected: &str,
+    ) -> Option<T> {
+        let value = match &node.value {
+            Value::Text(text) => parse(text),
+            _ => None,
+        };
+        if value.is_none() {
+            self.wrong(name, node, expected);
         }
+        value
+    }
+
+    fn text(&mut self, name: &str, node: &Node) -> Option<Spanned<String>> {
+        let parse = |text: &str| is_name(text).then(|| Spanned::new(text.to_owned(), node.span));
+        self.parsed(name, node, parse, "a text without control characters")
     }
 
     fn names(&mut self, name: &str, node: &Node) -> Vec<Spanned<String>> {
@@ -153,28 +164,17 @@ impl Reader<'_> {
     }
 
     fn severity(&mut self, node: &Node) -> Option<FindingSeverity> {
-        let text = match &node.value {
-            Value::Text(text) => text.as_str(),
-            _ => "",
+        let words = quoted(FindingSeverity::ALL.iter().map(|(word, _)| *word), ", ");
+        let parse = |text: &str| {
+            let found = FindingSeverity::ALL.into_iter().find(|(word, _)| *word == text);
+            found.map(|(_, severity)| severity)
         };
-        let found = FindingSeverity::ALL.iter().find(|(word, _)| *word == text);
-        if found.is_none() {
-            let words = quoted(FindingSeverity::ALL.iter().map(|(word, _)| *word), ", ");
-            self.wrong("severity", node, &format!("one of {words}"));
-        }
-        found.map(|(_, severity)| *severity)
+        self.parsed("severity", node, parse, &format!("one of {words}"))
     }
 
     fn factor(&mut self, node: &Node) -> Option<f64> {
-        let number = match &node.value {
-            Value::Text(text) => text.parse::<f64>().ok(),
-            _ => None,
-        };
-        let valid = number.filter(|factor| *factor > 0.0 && *factor <= 1.0);
-        if valid.is_none() {
-            self.wrong("factor", node, "a number above 0, at most 1");
-        }
-        valid
+        let parse = |text: &str| text.parse().ok().filter(|it| *it > 0.0 && *it <= 1.0);
+        self.parsed("factor", node, parse, "a number above 0, at most 1")
     }
 
     fn templates(&mut self, node: &Node) -> Vec<Template> {
@@ -219,13 +219,7 @@ impl Reader<'_> {
         node: &Node,
         keys: &[&'static str],
     ) -> DeclaredLimit {
-        let mut limit = DeclaredLimit {
-            span: key.span,
-            input: None,
-            bounds: Bounds::default(),
-            tolerated: None,
-            severity: None,
-        };
+        let mut limit = DeclaredLimit { span: key.span, ..DeclaredLimit::default() };
         for (key, node) in self.map(node, &format!("the limit `{}`", key.value), keys) {
             let name = key.value.as_str();
             match name {
@@ -239,7 +233,10 @@ impl Reader<'_> {
                 }
                 "min" => limit.bounds.min = self.bound(name, node),
                 "max" => limit.bounds.max = self.bound(name, node),
-                "for" => limit.tolerated = self.duration(node),
+                "for" => {
+                    let parse = |text: &str| parse_duration(text).ok();
+                    limit.tolerated = self.parsed(name, node, parse, "a duration such as `80ms`");
+                }
                 _ => limit.severity = self.severity(node),
             }
         }
@@ -247,25 +244,8 @@ impl Reader<'_> {
     }
 
     fn bound(&mut self, name: &str, node: &Node) -> Option<Bound> {
-        let bound = match &node.value {
-            Value::Text(text) => Bound::parse(text, node.span),
-            _ => None,
-        };
-        if bound.is_none() {
-            self.wrong(name, node, "a number, with or without a unit: `1.05rad`");
-        }
-        bound
-    }
-
-    fn duration(&mut self, node: &Node) -> Option<Duration> {
-        let duration = match &node.value {
-            Value::Text(text) => parse_duration(text).ok(),
-            _ => None,
-        };
-        if duration.is_none() {
-            self.wrong("for", node, "a duration such as `80ms`");
-        }
-        duration
+        let parse = |text: &str| Bound::parse(text, node.span);
+        self.parsed(name, node, parse, "a number, with or without a unit: `1.05rad`")
     }
 }
 

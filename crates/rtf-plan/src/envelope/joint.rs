@@ -63,8 +63,7 @@ pub(super) fn numbers(
     if numbers.is_none() {
         let expected = if count == 1 { "a number".to_owned() } else { format!("{count} numbers") };
         let message = format!("`{name}` is `{}`, expected {expected}", attribute.value());
-        let label = reader.source.label(Span::new(attribute.range_value()), "");
-        reader.report(Diagnostic::error("invalid-value", message).label(label));
+        reader.report(reader.error("invalid-value", Span::new(attribute.range_value()), message));
     }
     numbers
 }

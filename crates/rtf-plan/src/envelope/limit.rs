@@ -64,7 +64,7 @@ impl Input {
     }
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct DeclaredLimit {
     /// The position of its key.
     pub span: Span,

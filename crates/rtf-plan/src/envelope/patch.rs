@@ -22,8 +22,7 @@ pub(super) fn take_profiles(
         Value::Map(parts) => parts,
         _ => {
             let message = format!("`{PROFILES}` is {}, expected a mapping", profiles.kind());
-            let label = source.label(profiles.span, "");
-            let problem = Diagnostic::error("wrong-type", message).label(label);
+            let problem = source.error("wrong-type", profiles.span, message);
             problems.push(problem.hint("write a part of the file for each profile"));
             Vec::new()
         }

@@ -168,15 +168,13 @@ impl Reader<'_> {
     }
 
     fn report(&mut self, span: Span, message: &str, hint: &str) {
-        let label = self.source.label(span, "");
-        self.problems.push(Diagnostic::error("not-limits", message).label(label).hint(hint));
+        self.problems.push(self.source.error("not-limits", span, message).hint(hint));
     }
 
     fn malformed(&mut self, error: &ScanError) {
         let at = self.offset(error.marker().index());
         let message = format!("`{}` is not YAML: {}", self.source.name(), error.info());
-        let label = self.source.label(Span::new(at..at), "");
-        self.problems.push(Diagnostic::error("not-yaml", message).label(label));
+        self.problems.push(self.source.error("not-yaml", Span::new(at..at), message));
     }
 
     fn span(&self, span: saphyr_parser::Span) -> Span {

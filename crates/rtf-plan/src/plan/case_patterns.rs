@@ -4,7 +4,7 @@ use rtf_model::Diagnostic;
 
 use super::ListedCase;
 use crate::suite::split_param;
-use crate::wording::{nearest, quoted, suggest};
+use crate::wording::{nearest, quoted, suggest_or};
 
 /// The maximum number of cases that a diagnostic lists.
 const MAX_NAMES: usize = 5;
@@ -109,11 +109,8 @@ fn nth_char(text: &str, index: usize) -> Option<usize> {
 pub(super) fn unknown_case(path: &str, test: &str, listed: &[ListedCase]) -> Diagnostic {
     let message = format!("there is no case `{path}` in the test `{test}`");
     let problem = Diagnostic::error("unknown-case", message);
-    let problem = suggest(problem, path, listed.iter().map(|case| case.name.as_str()));
-    match problem.hint {
-        Some(_) => problem,
-        None => with_names(problem, listed),
-    }
+    let names = listed.iter().map(|case| case.name.as_str());
+    suggest_or(problem, path, names, |problem| with_names(problem, listed))
 }
 
 /// Lists the first cases of a test; `rtf list` shows no test of a suite with an error.

@@ -8,7 +8,7 @@
 
 mod diagnose;
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -123,9 +123,7 @@ pub struct CheckReport {
 #[derive(Debug)]
 struct FileUse {
     file: PathBuf,
-    tests: UseSites,
-    fixtures: UseSites,
-    hooks: UseSites,
+    sites: BTreeMap<PluginRole, UseSites>,
     optional: bool,
 }
 
@@ -151,9 +149,7 @@ impl PluginChecks {
                 group.index.insert(plugin.file.to_path_buf(), index);
                 group.files.push(FileUse {
                     file: plugin.file.to_path_buf(),
-                    tests: UseSites::default(),
-                    fixtures: UseSites::default(),
-                    hooks: UseSites::default(),
+                    sites: BTreeMap::new(),
                     optional: plugin.optional,
                 });
                 index
@@ -161,12 +157,7 @@ impl PluginChecks {
         };
         let entry = &mut group.files[index];
         entry.optional &= plugin.optional;
-        let sites = match plugin.role {
-            PluginRole::Test => &mut entry.tests,
-            PluginRole::Fixture => &mut entry.fixtures,
-            PluginRole::Hook => &mut entry.hooks,
-        };
-        sites.add(plugin.site);
+        entry.sites.entry(plugin.role).or_default().add(plugin.site);
         CheckId { group: id, file: index }
     }
 

@@ -4,12 +4,12 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use rtf_model::{Diagnostic, FixtureId};
+use rtf_model::Diagnostic;
 
 use super::plugin_planner::PluginPlanner;
 use super::plugin_search::shipped;
 use super::use_site::UseSite;
-use super::{ClockPlan, FixtureBody, FixturePlan, defaults};
+use super::{ClockPlan, FixturePlan, added_fixture};
 use crate::suite::{DeclaredClock, SourceText};
 
 /// The name of the fixture and of its plug-in.
@@ -48,20 +48,6 @@ fn fixture(
     let site = UseSite::Suite(Arc::clone(source), declared.span);
     let param = format!("--source {}", declared.source.word());
     let plugin = planner.plan_shipped(&file, kind, param, &site)?;
-    let is_taken = |name: &str| others.iter().any(|other| other.name == name);
-    let mut names = (2..).map(|number| format!("{NAME}#{number}"));
-    let name = Some(NAME.to_owned()).filter(|name| !is_taken(name));
-    Some(FixturePlan {
-        id: FixtureId(0),
-        name: name.or_else(|| names.find(|name| !is_taken(name)))?,
-        provides: Vec::new(),
-        depends: (0..others.len()).collect(),
-        body: FixtureBody::Plugin(plugin),
-        env: Vec::new(),
-        limits: defaults::FIXTURE,
-        reset: None,
-        restarts: defaults::RESTARTS,
-        restart_delay: defaults::RESTART_DELAY,
-        check_every: Some(CHECK_EVERY),
-    })
+    let fixture = added_fixture::plan(added_fixture::free_name(NAME, others), plugin, others);
+    Some(FixturePlan { check_every: Some(CHECK_EVERY), ..fixture })
 }

@@ -31,11 +31,8 @@ pub(super) fn plan(
             signals,
         };
         let compiled = request.compile();
-        for problem in compiled.problems {
-            let label = || source.label(envelope.file.span, "");
-            let needs_label = problem.labels.is_empty();
-            context.problems.push(if needs_label { problem.label(label()) } else { problem });
-        }
+        let problems = compiled.problems.into_iter();
+        context.problems.extend(problems.map(|it| source.locate(it, envelope.file.span)));
         context.sources.extend(compiled.sources.iter().map(Arc::clone));
         for monitor in compiled.monitors {
             if monitors.iter().any(|known| known.name == monitor.name) {

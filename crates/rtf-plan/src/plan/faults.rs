@@ -2,16 +2,14 @@
 
 use std::sync::Arc;
 
-use rtf_model::{
-    Diagnostic, FaultAction, FaultConfig, FaultTarget, FaultsConfig, FixtureId, Location,
-};
+use rtf_model::{Diagnostic, FaultAction, FaultConfig, FaultTarget, FaultsConfig, Location};
 
 use super::hosts::FAULTS;
 use super::of_tests::OfTests;
 use super::own_processes::SuiteFixtures;
 use super::plugin_planner::PluginPlanner;
 use super::use_site::UseSite;
-use super::{FixtureBody, FixturePlan, defaults};
+use super::{FixturePlan, added_fixture};
 use crate::suite::{DeclaredEffect, DeclaredFault, DeclaredTarget, SourceText};
 
 /// The name of the fixture: tests find its value `socket`.
@@ -53,9 +51,8 @@ pub(super) fn plan(
     let of_network = |it: &DeclaredFault| matches!(it.effect, DeclaredEffect::Network { .. });
     for (fault, _) in all.iter().filter(|(fault, _)| of_network(fault) && !declared.has_network) {
         let message = "a fault of the kind `network` needs a suite with a private network";
-        let label = source.label(fault.span, "");
         let hint = "write `isolate=\"network\"` in `<suite>`";
-        problems.push(Diagnostic::error("no-private-network", message).label(label).hint(hint));
+        problems.push(source.error("no-private-network", fault.span, message).hint(hint));
     }
     if fixtures.iter().any(|other| other.name == NAME) {
         let message = format!("a suite with a `<fault>` cannot name a fixture `{NAME}`");
@@ -75,19 +72,7 @@ pub(super) fn plan(
     let Some(plugin) = planner.plan_built_in(&FAULTS, source.name(), (param, args), &site) else {
         return;
     };
-    fixtures.push(FixturePlan {
-        id: FixtureId(0),
-        name: NAME.to_owned(),
-        provides: Vec::new(),
-        depends: (0..fixtures.len()).collect(),
-        body: FixtureBody::Plugin(plugin),
-        env: Vec::new(),
-        limits: defaults::FIXTURE,
-        reset: None,
-        restarts: defaults::RESTARTS,
-        restart_delay: defaults::RESTART_DELAY,
-        check_every: None,
-    });
+    fixtures.push(added_fixture::plan(NAME.to_owned(), plugin, fixtures));
 }
 
 /// Directories are arguments of the plug-in, in which references are replaced when it starts.

@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use rtf_model::{Diagnostic, FixtureId};
 
-use super::context::PlanContext;
 use super::fixture_values::DeclaredValues;
 use super::names::UniqueNames;
 use super::plugin_planner::PluginPlanner;
@@ -94,24 +93,23 @@ fn plan(
         }),
         None => None,
     };
+    let scope = planner.scope();
     let body = match fixture.body {
         FixtureKind::Plugin(plugin) => {
             let role = PluginRole::Fixture;
             FixtureBody::Plugin(planner.plan(plugin, source, &fixture.env, role)?)
         }
         FixtureKind::Process(process) => {
-            let scope = planner.scope();
+            let scope = scope.with(&fixture.env);
             let mut planner =
-                ProcessPlanner::new(source, scope.with(&fixture.env), planner.context);
-            let process = planner.plan(*process, &fixture.provides, check_every);
-            FixtureBody::Process(Arc::new(process))
+                ProcessPlanner { source, scope, problems: &mut planner.context.problems };
+            FixtureBody::Process(Arc::new(planner.plan(*process, &fixture.provides, check_every)))
         }
         FixtureKind::Attached(probes) => {
-            let scope = planner.scope();
+            let scope = scope.with(&fixture.env);
             let mut planner =
-                ProcessPlanner::new(source, scope.with(&fixture.env), planner.context);
-            let mut attached = planner.plan_attached(probes, check_every);
-            attached.values = planner.values(&fixture.provides);
+                ProcessPlanner { source, scope, problems: &mut planner.context.problems };
+            let attached = planner.plan_attached(probes, &fixture.provides, check_every);
             FixtureBody::Attached(Arc::new(attached))
         }
     };
@@ -140,23 +138,14 @@ struct ProcessPlanner<'a> {
     problems: &'a mut Vec<Diagnostic>,
 }
 
-impl<'a> ProcessPlanner<'a> {
-    fn new(
-        source: &'a Arc<SourceText>,
-        scope: SearchScope<'a>,
-        context: &'a mut PlanContext<'_>,
-    ) -> Self {
-        Self { source, scope, problems: &mut context.problems }
-    }
-
+impl ProcessPlanner<'_> {
     fn plan(
         &mut self,
         declared: DeclaredProcess,
         provides: &[DeclaredProvide],
         check_every: Option<Duration>,
     ) -> ProcessPlan {
-        let mut probes = self.probes(declared.probes, check_every);
-        probes.values = self.values(provides);
+        let probes = self.probes(declared.probes, provides, check_every);
         let remote =
             declared.host.map(|host| RemotePlan { ssh: self.ssh(&host), host: host.value });
         let command = match remote {
@@ -178,11 +167,13 @@ impl<'a> ProcessPlanner<'a> {
     fn plan_attached(
         &mut self,
         declared: DeclaredProbes,
+        provides: &[DeclaredProvide],
         check_every: Option<Duration>,
     ) -> ProbePlans {
         let intervals: Vec<_> = declared.ready.iter().map(|probe| probe.every).collect();
         let every = check_every.unwrap_or(ALIVE_EVERY);
-        let ProbePlans { mut ready, mut alive, values } = self.probes(declared, check_every);
+        let plans = self.probes(declared, provides, check_every);
+        let ProbePlans { mut ready, mut alive, values } = plans;
         let at = |probe: &Probe, every| Probe { every, ..probe.clone() };
         if alive.is_empty() {
             let both = ready.iter().zip(intervals);
@@ -193,14 +184,19 @@ impl<'a> ProcessPlanner<'a> {
         ProbePlans { ready, alive, values }
     }
 
-    fn probes(&mut self, declared: DeclaredProbes, check_every: Option<Duration>) -> ProbePlans {
+    fn probes(
+        &mut self,
+        declared: DeclaredProbes,
+        provides: &[DeclaredProvide],
+        check_every: Option<Duration>,
+    ) -> ProbePlans {
         let mut plan = |probes: Vec<suite::DeclaredProbe>, every| {
             probes.into_iter().map(|probe| self.probe(probe, every)).collect()
         };
         ProbePlans {
             ready: plan(declared.ready, READY_EVERY),
             alive: plan(declared.alive, check_every.unwrap_or(ALIVE_EVERY)),
-            values: Vec::new(),
+            values: self.values(provides),
         }
     }
 
@@ -251,8 +247,7 @@ impl<'a> ProcessPlanner<'a> {
             Ok(words) if !words.is_empty() => self.command(Spanned::new(words, host.span)),
             _ => {
                 let message = format!("`{SSH_VARIABLE}` is not a command: `{line}`");
-                let label = self.source.label(host.span, "");
-                self.problems.push(Diagnostic::error("invalid-value", message).label(label));
+                self.problems.push(self.source.error("invalid-value", host.span, message));
                 Vec::new()
             }
         }

@@ -6,7 +6,7 @@ use rtf_model::{Diagnostic, FixtureProvided};
 
 use super::dependencies::SetupStep;
 use crate::suite::{DeclaredFixture, FixtureReference, ReferenceUser, SourceText, Span};
-use crate::wording::suggest;
+use crate::wording::{suggest, suggest_or};
 
 /// The fixtures of a suite, in the order of the file.
 pub(super) struct DeclaredValues<'a> {
@@ -44,12 +44,9 @@ impl DeclaredValues<'_> {
             let message = format!("the fixture `{name}` declares no value `{value}`");
             let problem = Diagnostic::error("unknown-fixture-value", message);
             let known = provides.iter().map(|provide| provide.name.value.as_str());
-            let problem = suggest(problem, value, known);
-            return Some(if problem.hint.is_some() {
-                problem
-            } else {
+            return Some(suggest_or(problem, value, known, |problem| {
                 problem.hint(format!("declare it with `<provide name=\"{value}\" …/>`"))
-            });
+            }));
         }
         let ReferenceUser::Fixture(from) = *user else { return None };
         if from == index {
@@ -89,8 +86,8 @@ impl DeclaredValues<'_> {
                 let shown = format!("{name}.{value}");
                 if let Some((other, first)) = variables.get(&variable) {
                     let message = format!("`{other}` and `{shown}` would both be in `{variable}`");
-                    let problem = Diagnostic::error("repeated-value", message)
-                        .label(source.label(span, ""))
+                    let problem = source
+                        .error("repeated-value", span, message)
                         .label(source.label(*first, "the other one"));
                     problems.push(problem);
                     continue;

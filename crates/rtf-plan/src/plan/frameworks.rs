@@ -4,8 +4,8 @@
 use std::time::Duration;
 
 use super::framework_kind::{CaseLimits, Forks, Framework, TestSubject};
-use super::host_kind::{HostKind, HostStart};
-use super::sdk::{PYTHON_SDK, Sdk};
+use super::host_kind::{HostKind, SHIPPED};
+use super::sdk::PYTHON_SDK;
 
 /// The limit of a check that starts the program, or imports the user's modules.
 const LIST_LIMIT: Option<Duration> = Some(Duration::from_secs(2 * 60));
@@ -41,12 +41,12 @@ pub(super) static FRAMEWORKS: [HostKind; 16] = [
         extensions: &["jar"],
         ..kind(&["junit"], Framework { subject: TestSubject::FileOrDirectory, ..BUILT_DIRECTORY })
     },
-    with_python_sdk(kind(&["pytest"], PYTHON_TESTS)),
-    with_python_sdk(kind(&["unittest"], PYTHON_TESTS)),
-    with_python_sdk(kind(
-        &["launch_testing"],
-        Framework { subject: TestSubject::File, ..PYTHON_TESTS },
-    )),
+    HostKind { sdk: Some(&PYTHON_SDK), ..kind(&["pytest"], PYTHON_TESTS) },
+    HostKind { sdk: Some(&PYTHON_SDK), ..kind(&["unittest"], PYTHON_TESTS) },
+    HostKind {
+        sdk: Some(&PYTHON_SDK),
+        ..kind(&["launch_testing"], Framework { subject: TestSubject::File, ..PYTHON_TESTS })
+    },
     kind(&["ctest"], Framework { check_limit: LIST_LIMIT, ..BUILT_DIRECTORY }),
     HostKind {
         extensions: &["test"],
@@ -62,26 +62,11 @@ pub(super) static FRAMEWORKS: [HostKind; 16] = [
 const fn kind(arguments: &'static [&'static str; 1], framework: Framework) -> HostKind {
     HostKind {
         name: arguments[0],
-        extensions: &[],
-        prefixes: &[""],
-        library_path: None,
-        class_prefix: None,
         framework: Some(framework),
-        start: start(arguments, None),
+        program: "rtf-host-framework",
+        arguments,
+        ..SHIPPED
     }
-}
-
-const fn with_python_sdk(kind: HostKind) -> HostKind {
-    match kind.start {
-        HostStart::Shipped { arguments, .. } => {
-            HostKind { start: start(arguments, Some(&PYTHON_SDK)), ..kind }
-        }
-        HostStart::Interpreter { .. } => kind,
-    }
-}
-
-const fn start(arguments: &'static [&'static str], sdk: Option<&'static Sdk>) -> HostStart {
-    HostStart::Shipped { program: "rtf-host-framework", arguments, sdk, forks: false }
 }
 
 /// Returns the type of this name, ignoring case as for other types.

@@ -26,55 +26,41 @@ pub(super) struct HostKind {
     pub class_prefix: Option<&'static str>,
     /// For a type whose tests another framework runs.
     pub framework: Option<Framework>,
-    pub start: HostStart,
+    /// The host: a program that comes with `rtf`, or the name of an interpreter in `PATH`.
+    pub program: &'static str,
+    /// For the user's interpreter, the variable that selects another one.
+    pub variable: Option<&'static str>,
+    pub arguments: &'static [&'static str],
+    /// The SDK that comes with `rtf`: the module of an interpreter, or what tests can import.
+    pub sdk: Option<&'static Sdk>,
+    /// Whether it can run as a fork server.
+    pub forks: bool,
 }
 
-#[derive(Debug)]
-pub(super) enum HostStart {
-    /// A program that comes with `rtf`.
-    Shipped {
-        program: &'static str,
-        arguments: &'static [&'static str],
-        /// The SDK that its tests can import.
-        sdk: Option<&'static Sdk>,
-        /// Whether it can run as a fork server.
-        forks: bool,
-    },
-    /// The user's interpreter with a module that comes with `rtf`.
-    Interpreter {
-        /// The name in `PATH`.
-        program: &'static str,
-        /// The variable that selects another program.
-        variable: &'static str,
-        arguments: &'static [&'static str],
-        sdk: &'static Sdk,
-        /// Whether the module can run as a fork server.
-        forks: bool,
-    },
-}
+/// A host that comes with `rtf`, for entries of the catalogues.
+pub(super) const SHIPPED: HostKind = HostKind {
+    name: "",
+    extensions: &[],
+    prefixes: &[""],
+    library_path: None,
+    class_prefix: None,
+    framework: None,
+    program: "",
+    variable: None,
+    arguments: &[],
+    sdk: None,
+    forks: false,
+};
 
 impl HostKind {
-    pub fn sdk(&self) -> Option<&'static Sdk> {
-        match &self.start {
-            HostStart::Shipped { sdk, .. } => *sdk,
-            HostStart::Interpreter { sdk, .. } => Some(sdk),
-        }
-    }
-
     /// Finds the host for processes in `scope`.
     pub fn locate(&self, scope: &SearchScope<'_>) -> Result<HostPlan, Box<Diagnostic>> {
-        match &self.start {
-            HostStart::Shipped { program, arguments, sdk, forks } => {
-                let file = shipped_host(program, scope)?;
-                let env = sdk.map(|sdk| sdk.env(scope)).transpose()?.unwrap_or_default();
-                Ok(HostPlan { command: command(&file, arguments)?, env, forks: *forks })
-            }
-            HostStart::Interpreter { program, variable, arguments, sdk, forks } => {
-                let file = interpreter(self.name, program, variable, scope)?;
-                let command = command(&file, arguments)?;
-                Ok(HostPlan { command, env: sdk.env(scope)?, forks: *forks })
-            }
-        }
+        let file = match self.variable {
+            Some(variable) => interpreter(self.name, self.program, variable, scope)?,
+            None => shipped_host(self.program, scope)?,
+        };
+        let env = self.sdk.map(|sdk| sdk.env(scope)).transpose()?.unwrap_or_default();
+        Ok(HostPlan { command: command(&file, self.arguments)?, env, forks: self.forks })
     }
 }
 

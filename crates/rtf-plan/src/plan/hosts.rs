@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use super::frameworks;
-use super::host_kind::{HostKind, HostStart};
+use super::host_kind::{HostKind, SHIPPED};
 use super::sdk::{PYTHON_SDK, RUBY_SDK};
 
 const NATIVE_EXTENSIONS: &[&str] = if cfg!(target_os = "macos") {
@@ -33,85 +33,41 @@ pub(super) static HOSTS: [HostKind; 4] = [
         prefixes: &["", "lib"],
         library_path: Some(LIBRARY_PATH),
         class_prefix: Some("rtf::"),
-        framework: None,
-        start: shipped("rtf-host-native"),
+        program: "rtf-host-native",
+        forks: true,
+        ..SHIPPED
     },
-    HostKind {
-        name: "lua",
-        extensions: &["lua"],
-        prefixes: &[""],
-        library_path: None,
-        class_prefix: None,
-        framework: None,
-        start: shipped("rtf-host-lua"),
-    },
+    HostKind { name: "lua", extensions: &["lua"], program: "rtf-host-lua", forks: true, ..SHIPPED },
     HostKind {
         name: "python",
         extensions: &["py"],
-        prefixes: &[""],
-        library_path: None,
         class_prefix: Some("rtf."),
-        framework: None,
-        start: HostStart::Interpreter {
-            program: "python3",
-            variable: "RTF_PYTHON",
-            arguments: &["-m", "rtf_start", "rtf.host"],
-            sdk: &PYTHON_SDK,
-            forks: true,
-        },
+        program: "python3",
+        variable: Some("RTF_PYTHON"),
+        arguments: &["-m", "rtf_start", "rtf.host"],
+        sdk: Some(&PYTHON_SDK),
+        forks: true,
+        ..SHIPPED
     },
     HostKind {
         name: "ruby",
         extensions: &["rb"],
-        prefixes: &[""],
-        library_path: None,
         class_prefix: Some("RTF::"),
-        framework: None,
-        start: HostStart::Interpreter {
-            program: "ruby",
-            variable: "RTF_RUBY",
-            arguments: &["-e", "require 'rtf/host'; RTF::Host.main", "--"],
-            sdk: &RUBY_SDK,
-            forks: false,
-        },
+        program: "ruby",
+        variable: Some("RTF_RUBY"),
+        arguments: &["-e", "require 'rtf/host'; RTF::Host.main", "--"],
+        sdk: Some(&RUBY_SDK),
+        ..SHIPPED
     },
 ];
 
 /// The host of the fixture `signals`, which no suite names.
-pub(super) static SIGNALS: HostKind = HostKind {
-    name: "signals",
-    extensions: &[],
-    prefixes: &[],
-    library_path: None,
-    class_prefix: None,
-    framework: None,
-    start: HostStart::Shipped {
-        program: "rtf-host-signals",
-        arguments: &[],
-        sdk: None,
-        forks: false,
-    },
-};
+pub(super) static SIGNALS: HostKind =
+    HostKind { name: "signals", program: "rtf-host-signals", ..SHIPPED };
 
 /// The host of the fixture `faults`, which no suite names.
-pub(super) static FAULTS: HostKind = HostKind {
-    name: "faults",
-    extensions: &[],
-    prefixes: &[],
-    library_path: None,
-    class_prefix: None,
-    framework: None,
-    start: HostStart::Shipped {
-        program: "rtf-host-faults",
-        arguments: &[],
-        sdk: None,
-        forks: false,
-    },
-};
-
-const fn shipped(program: &'static str) -> HostStart {
-    HostStart::Shipped { program, arguments: &[], sdk: None, forks: true }
-}
+pub(super) static FAULTS: HostKind =
+    HostKind { name: "faults", program: "rtf-host-faults", ..SHIPPED };
 
 /// Returns the type of this name, ignoring case as 2.x did.
 pub(super) fn by_name(name: &str) -> Option<&'static HostKind> {

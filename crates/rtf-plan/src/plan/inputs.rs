@@ -122,7 +122,7 @@ fn resolve_path(
 fn named_plugin(file: InputFile, options: &Options) -> Result<ResolvedInput, Box<Diagnostic>> {
     let kind = hosts::by_extension(&file.path).unwrap_or(&HOSTS[0]);
     let scope = SearchScope::of_runner(&options.runner);
-    match PluginFinder::new().find(&file.name, kind, &scope) {
+    match PluginFinder::default().find(&file.name, kind, &scope) {
         Some(path) => {
             let file = InputFile { path, ..file };
             Ok(ResolvedInput::Plugin(DirectPlugin { file, kind, from_dir: false }))

@@ -119,12 +119,9 @@ impl<'a> MatrixExpander<'a> {
                 if let Some(known) = self.tables.get(&file.value) {
                     return known.clone().map(|table| (table, file.span));
                 }
-                let label = self.source.label(file.span, "");
                 let found = read_table(self.dir, &file.value);
-                self.problems.extend(found.problems.into_iter().map(|problem| {
-                    let is_located = !problem.labels.is_empty();
-                    if is_located { problem } else { problem.label(label.clone()) }
-                }));
+                let problems = found.problems.into_iter();
+                self.problems.extend(problems.map(|it| self.source.locate(it, file.span)));
                 found.source.into_iter().for_each(|source| self.sources.add(source));
                 let table = found.table.map(Rc::new);
                 self.tables.insert(file.value.clone(), table.clone());
@@ -142,8 +139,9 @@ impl<'a> MatrixExpander<'a> {
                     continue;
                 };
                 let message = describe_same_variable(other, name);
-                let problem = Diagnostic::error("duplicate-name", message)
-                    .label(self.source.label(*span, ""))
+                let problem = self
+                    .source
+                    .error("duplicate-name", *span, message)
                     .label(self.source.label(first, "the first one"));
                 self.problems.push(problem);
                 return None;
@@ -194,8 +192,7 @@ impl<'a> MatrixExpander<'a> {
     }
 
     fn report(&mut self, code: &str, message: &str, span: Span) {
-        let label = self.source.label(span, "");
-        self.problems.push(Diagnostic::error(code, message).label(label));
+        self.problems.push(self.source.error(code, span, message));
     }
 }
 

@@ -64,7 +64,7 @@ fn parse(source: &SourceText, problems: &mut Vec<Diagnostic>) -> Option<MatrixTa
         };
         let span = span_of(source, &record);
         let mut report = |code: &str, message: String| {
-            problems.push(Diagnostic::error(code, message).label(source.label(span, "")));
+            problems.push(source.error(code, span, message));
         };
         let cells: Vec<String> = record.iter().map(str::to_owned).collect();
         let Some(table) = &mut table else {
@@ -87,8 +87,8 @@ fn parse(source: &SourceText, problems: &mut Vec<Diagnostic>) -> Option<MatrixTa
         } else if let Some(message) = cells.iter().find_map(|value| invalid_value(value)) {
             report("invalid-value", message);
         } else if let Some(first) = first_rows.insert(cells.clone(), span) {
-            let problem = Diagnostic::error("invalid-value", "the same values occur in two rows")
-                .label(source.label(span, ""))
+            let problem = source
+                .error("invalid-value", span, "the same values occur in two rows")
                 .label(source.label(first, "the first one"));
             problems.push(problem);
         }

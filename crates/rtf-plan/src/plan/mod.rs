@@ -6,6 +6,7 @@
 //! hosts' answers. A valid plan can fail only because of the outside world, not
 //! because of its input files.
 
+mod added_fixture;
 mod bench_files;
 mod case_narrowing;
 mod case_patterns;

@@ -9,7 +9,7 @@ use super::hosts::SIGNALS;
 use super::of_tests::OfTests;
 use super::{FixtureBody, SuitePlan};
 use crate::suite::{DeclaredMonitor, DeclaredSignal, SourceText, episode_reference, position_of};
-use crate::wording::{quoted, suggest};
+use crate::wording::{quoted, suggest_or};
 
 /// Plans the monitors of a suite and of its tests, and reports invalid ones.
 pub(super) fn plan(
@@ -96,27 +96,22 @@ impl FormulaCheck<'_> {
     fn unknown_signal(&self, name: &str) -> Diagnostic {
         let problem = Diagnostic::error("unknown-signal", format!("there is no signal `{name}`"));
         let known = || self.signals.iter().map(|signal| signal.name.value.as_str());
-        let problem = suggest(problem, name, known());
-        match (&problem.hint, self.signals) {
-            (Some(_), _) => problem,
-            (None, []) => problem.hint("declare it with `<signal>` in the suite"),
-            (None, _) => problem.note(format!("the suite has {}", quoted(known(), ", "))),
-        }
+        suggest_or(problem, name, known(), |problem| match self.signals {
+            [] => problem.hint("declare it with `<signal>` in the suite"),
+            _ => problem.note(format!("the suite has {}", quoted(known(), ", "))),
+        })
     }
 
     fn at(&self, problem: Diagnostic, range: Range<usize>, hint: Option<String>) -> Diagnostic {
         let formula = &self.monitor.formula;
         let written = self.source.text().get(formula.span.range()).unwrap_or_default();
-        let problem = if written.contains("${") {
+        let problem = Diagnostic { hint: hint.or(problem.hint), ..problem };
+        if written.contains("${") {
             let note = format!("with its parameters, the formula is `{}`", formula.value);
             problem.label(self.source.label(formula.span, "")).note(note)
         } else {
             let span = position_of(self.source, formula, range);
             problem.label(self.source.label(span, ""))
-        };
-        match hint {
-            Some(hint) => problem.hint(hint),
-            None => problem,
         }
     }
 }

@@ -4,7 +4,7 @@ use rtf_model::Diagnostic;
 use rtf_model::protocol::CaseSelector;
 
 use super::{CaseSelection, CaseSelectionOrigin, SuitePlan, TestPlan};
-use crate::wording::suggest;
+use crate::wording::suggest_or;
 
 /// Removes all but the named tests of a suite, and selects the named cases of these.
 /// Reports unknown names.
@@ -51,12 +51,8 @@ fn unknown_test(suite: &SuitePlan, name: &str) -> Diagnostic {
     let problem = Diagnostic::error("unknown-test", message);
     let known = suite.tests.iter().map(|test| test.name.as_str());
     let matrices = suite.tests.iter().filter_map(TestPlan::matrix);
-    let problem = suggest(problem, name, known.chain(matrices));
-    match problem.hint {
-        Some(_) => problem,
-        None => {
-            let file = shell_words::quote(&suite.file);
-            problem.hint(format!("`rtf list {file}` shows its tests"))
-        }
-    }
+    suggest_or(problem, name, known.chain(matrices), |problem| {
+        let file = shell_words::quote(&suite.file);
+        problem.hint(format!("`rtf list {file}` shows its tests"))
+    })
 }

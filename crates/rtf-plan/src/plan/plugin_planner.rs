@@ -39,7 +39,7 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
         Self {
             context,
             scope,
-            finder: PluginFinder::new(),
+            finder: PluginFinder::default(),
             hosts: HashMap::new(),
             types: HashMap::new(),
             missing: Vec::new(),
@@ -74,7 +74,7 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
         let file = if env.is_empty() {
             self.finder.find(name, kind, &scope)
         } else {
-            PluginFinder::new().find(name, kind, &scope)
+            PluginFinder::default().find(name, kind, &scope)
         };
         let is_untyped = role == PluginRole::Fixture && declared.plugin_type.is_none();
         let shipped = is_untyped.then(|| plugin_search::shipped(name, &scope)).flatten();
@@ -188,7 +188,7 @@ impl<'a, 'c> PluginPlanner<'a, 'c> {
             self.hosts.insert(kind.name, located.clone());
         }
         // Several types have the same SDK.
-        if let Some(hidden) = kind.sdk().and_then(|sdk| sdk.hidden_module(&self.scope))
+        if let Some(hidden) = kind.sdk.and_then(|sdk| sdk.hidden_module(&self.scope))
             && !self.context.problems.contains(&hidden)
         {
             self.context.problems.push(hidden);

@@ -61,16 +61,13 @@ fn unknown_type(declared: &str, role: PluginRole) -> Diagnostic {
 }
 
 /// Finds plug-ins in one scope and caches the results.
+#[derive(Default)]
 pub(super) struct PluginFinder {
     dirs: HashMap<&'static str, Arc<[PathBuf]>>,
     found: HashMap<(&'static str, String), Option<PathBuf>>,
 }
 
 impl PluginFinder {
-    pub fn new() -> Self {
-        Self { dirs: HashMap::new(), found: HashMap::new() }
-    }
-
     pub fn find(
         &mut self,
         name: &str,

@@ -67,9 +67,8 @@ impl Quarantines {
                 let failure = &quarantine.failure;
                 warnings.extend(known_failure::warn_of_end(failure, today, &file.source));
             } else {
-                let label = file.source.label(quarantine.span, "");
                 let message = "this quarantine matches no test";
-                warnings.push(Diagnostic::warning("unused-quarantine", message).label(label));
+                warnings.push(file.source.warning("unused-quarantine", quarantine.span, message));
             }
         }
         warnings

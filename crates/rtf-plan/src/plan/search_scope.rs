@@ -45,9 +45,7 @@ impl<'a> SearchScope<'a> {
         let dir = &runner.current_dir;
         Self { runner, dir, fallback_dir: None, suite_env: &[], own_env: &[] }
     }
-}
 
-impl SearchScope<'_> {
     /// Returns the same scope with other variables of a test, fixture or hook.
     pub fn with<'b>(&'b self, own_env: &'b Env) -> SearchScope<'b> {
         SearchScope { own_env, ..*self }

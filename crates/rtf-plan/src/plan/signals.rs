@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use rtf_model::{
-    Diagnostic, FixtureId, MeasuredFixture, SignalConfig, SignalProgram, SignalRecording,
-    SignalSource, SignalTime, SignalsConfig, TestSignal,
+    Diagnostic, MeasuredFixture, SignalConfig, SignalProgram, SignalRecording, SignalSource,
+    SignalTime, SignalsConfig, TestSignal,
 };
 
 use super::hosts::SIGNALS;
@@ -16,9 +16,7 @@ use super::of_tests::OfTests;
 use super::own_processes::SuiteFixtures;
 use super::plugin_planner::PluginPlanner;
 use super::use_site::UseSite;
-use super::{
-    FixtureBody, FixturePlan, HookBody, ResetPlan, defaults, envelopes, middleware, program,
-};
+use super::{FixturePlan, HookBody, ResetPlan, added_fixture, envelopes, middleware, program};
 use crate::suite::{
     DeclaredEnvelope, DeclaredMonitor, DeclaredSignal, DeclaredSource, DeclaredSourceKind,
     SignalMiddleware, SourceText, Spanned, episode_reference,
@@ -75,22 +73,9 @@ pub(super) fn plan(
     let Some(plugin) = planner.plan_built_in(&SIGNALS, source.name(), (param, args), &site) else {
         return;
     };
-    let is_taken = |name: &String| fixtures.iter().any(|other| other.name == *name);
-    let numbered = (2..).map(|number| format!("{NAME}#{number}"));
-    let name = std::iter::once(NAME.to_owned()).chain(numbered).find(|name| !is_taken(name));
-    fixtures.push(FixturePlan {
-        id: FixtureId(0),
-        name: name.unwrap_or_default(),
-        provides: Vec::new(),
-        depends: (0..fixtures.len()).collect(),
-        body: FixtureBody::Plugin(plugin),
-        env: Vec::new(),
-        limits: defaults::FIXTURE,
-        reset,
-        restarts: defaults::RESTARTS,
-        restart_delay: defaults::RESTART_DELAY,
-        check_every: None,
-    });
+    let name = added_fixture::free_name(NAME, fixtures);
+    let fixture = added_fixture::plan(name, plugin, fixtures);
+    fixtures.push(FixturePlan { reset, ..fixture });
 }
 
 /// Between two episodes of a campaign, nothing has to be done, unless the fixture or its programs

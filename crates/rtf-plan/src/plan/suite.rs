@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use rtf_model::{SuiteId, TestId};
+use rtf_model::TestId;
 
 use super::context::{PlanContext, parent_dir};
 use super::faults::DeclaredFaults;
@@ -16,8 +16,8 @@ use super::search_scope::SearchScope;
 use super::signals::DeclaredSignals;
 use super::test_planner::{PlannedTests, SharedLimits, TestPlanner};
 use super::{
-    Compatibility, Isolation, OwnMiddleware, Preparation, SuitePlan, SuiteSettings, TestPlan,
-    TestSettings, clock, faults, fixture, hook, middleware, signals,
+    Compatibility, Isolation, OwnMiddleware, SuitePlan, SuiteSettings, TestPlan, TestSettings,
+    clock, faults, fixture, hook, middleware, signals,
 };
 use crate::config;
 use crate::suite::{
@@ -85,21 +85,18 @@ pub(super) fn plan_suite(
     signals::plan(&mut planner, source, declared, &mut fixtures);
     planner.report_missing();
     let plan = SuitePlan {
-        id: SuiteId(0),
         name,
         file: file.name.clone(),
         folder: dir,
         env,
         isolate,
-        preparation: Preparation::NotNeeded,
         settings: suite.settings,
-        episodes: Arc::default(),
-        awaits_episodes: false,
         refers_to_values: suite.fixture_references.any,
         clock,
         fixtures,
         hooks,
         tests,
+        ..SuitePlan::default()
     };
     SuiteDraft { plan, frameworks }
 }
@@ -189,20 +186,11 @@ pub(super) fn plan_direct_plugins(
         });
     }
     SuitePlan {
-        id: SuiteId(0),
         name: DIRECT_PLUGINS.to_owned(),
-        file: String::new(),
         folder: dir,
         env: Arc::new(env),
-        isolate: Isolation::default(),
-        preparation: Preparation::NotNeeded,
         settings: SuiteSettings { environment, ..SuiteSettings::default() },
-        episodes: Arc::default(),
-        awaits_episodes: false,
-        refers_to_values: false,
-        clock: None,
-        fixtures: Vec::new(),
-        hooks: Vec::new(),
         tests,
+        ..SuitePlan::default()
     }
 }

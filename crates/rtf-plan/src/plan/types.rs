@@ -54,7 +54,7 @@ impl Plan {
     }
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct SuitePlan {
     pub id: SuiteId,
     /// The name, unique in the run.

@@ -40,10 +40,6 @@ impl UseSites {
         }
     }
 
-    pub fn is_empty(&self) -> bool {
-        self.count == 0
-    }
-
     /// Adds the positions as labels before those of the problem.
     pub fn label(&self, mut problem: Diagnostic, text: &str) -> Diagnostic {
         let last = std::mem::take(&mut problem.labels);
@@ -59,7 +55,7 @@ impl UseSites {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum PluginRole {
     Test,
     Fixture,

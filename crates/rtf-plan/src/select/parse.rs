@@ -22,7 +22,7 @@ use rtf_model::protocol::CaseSelector;
 
 use super::filter::{Filter, Matcher, SUBJECTS, Subject};
 use crate::suite::{SourceText, Span};
-use crate::wording::suggest;
+use crate::wording::suggest_or;
 
 /// The conditions that are not a [`Subject`].
 const OTHER_CONDITIONS: [&str; 3] = ["case", "all", "none"];
@@ -165,12 +165,10 @@ impl Parser<'_> {
         let what = format!("there is no condition `{word}`");
         let problem = self.problem(start..start + word.len(), &what);
         let words = SUBJECTS.map(Subject::word).into_iter().chain(OTHER_CONDITIONS);
-        let problem = suggest(problem, word, words);
-        match problem.hint {
-            Some(_) => problem,
-            None => problem
-                .note("the conditions are tag, type, suite, name, file, param, case, all and none"),
-        }
+        suggest_or(problem, word, words, |problem| {
+            problem
+                .note("the conditions are tag, type, suite, name, file, param, case, all and none")
+        })
     }
 
     fn matcher(&mut self, subject: Subject) -> Parsed<Matcher> {

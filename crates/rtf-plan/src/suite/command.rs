@@ -38,8 +38,7 @@ pub(super) fn words(
     if let Some((word, hint)) = shell_syntax(&line.value, &words) {
         let message =
             format!("no shell reads this command: the program gets `{word}` as an argument");
-        let label = reader.source.label(line.span, "");
-        reader.report(Diagnostic::warning("no-shell", message).label(label).hint(hint));
+        reader.report(reader.source.warning("no-shell", line.span, message).hint(hint));
     }
     if words.first().is_none_or(String::is_empty) {
         reader.wrong(name, line, "names no program", None);

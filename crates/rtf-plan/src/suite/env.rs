@@ -32,12 +32,7 @@ pub(super) fn read(reader: &mut ElementReader<'_>, parent: Node<'_, '_>) -> Vec<
     let mut found: Vec<(String, String)> = Vec::new();
     for node in parent.children().filter(|child| child.has_tag_name("env")) {
         check(reader, node, &schema::ENV);
-        let Some(name) = reader.word(node, "name") else {
-            if node.attribute("name").is_none() {
-                reader.missing(node, "the attribute `name`");
-            }
-            continue;
-        };
+        let Some(name) = reader.required(node, "name", "") else { continue };
         if name.value.contains('=') {
             reader.wrong("name", &name, "cannot have a `=`", None);
         } else if is_reserved(&name.value) {

@@ -5,7 +5,7 @@
 
 use rtf_model::Parameter;
 
-use crate::placeholder::{Segment, segments};
+use crate::placeholder;
 
 const OPEN: &str = "${episode:";
 
@@ -24,34 +24,16 @@ pub fn mentions(text: &str) -> bool {
 /// Replaces each reference by a text.
 #[must_use]
 pub fn replace(text: &str, with: &str) -> String {
-    let mut replaced = String::with_capacity(text.len());
-    for segment in segments(text, OPEN) {
-        match segment {
-            Segment::Text(text) => replaced += text,
-            Segment::Placeholder(..) => replaced += with,
-            Segment::Unclosed(start) => replaced += &text[start..],
-        }
-    }
-    replaced
+    placeholder::replace(text, OPEN, |_| Some(with.into()))
 }
 
 /// Replaces the references to these parameters; others are kept.
 #[must_use]
 pub fn expand(text: &str, parameters: &[Parameter]) -> String {
-    let mut expanded = String::with_capacity(text.len());
-    for segment in segments(text, OPEN) {
-        match segment {
-            Segment::Text(text) => expanded += text,
-            Segment::Placeholder(name, start) => {
-                match parameters.iter().find(|parameter| parameter.name == name) {
-                    Some(parameter) => expanded += &parameter.value,
-                    None => expanded += &text[start..start + OPEN.len() + name.len() + 1],
-                }
-            }
-            Segment::Unclosed(start) => expanded += &text[start..],
-        }
-    }
-    expanded
+    placeholder::replace(text, OPEN, |name| {
+        let parameter = parameters.iter().find(|parameter| parameter.name == name)?;
+        Some(parameter.value.as_str().into())
+    })
 }
 
 #[cfg(test)]

@@ -3,12 +3,12 @@
 use std::time::Duration;
 
 use roxmltree::Node;
-use rtf_model::{Diagnostic, FaultAmount, FaultKind, NetworkFault};
+use rtf_model::{FaultAmount, FaultKind, NetworkFault};
 
-use super::fault_quantity::{percent, rate, share, size, time};
+use super::fault_quantity::{micros, percent, rate, share, size, time};
 use super::reader::ElementReader;
 use super::schema::{self, check};
-use super::{DeclaredEffect, DeclaredFault, DeclaredTarget, Span, reference, value_fault};
+use super::{DeclaredEffect, DeclaredFault, DeclaredTarget, reference, value_fault};
 use crate::wording::quoted;
 
 /// The attributes of each kind, and their meaning where one is missing.
@@ -62,11 +62,9 @@ fn effect(
         }
         FaultKind::Memory => amount(reader, node).map(DeclaredEffect::Memory),
         FaultKind::Disk => {
-            if !node.has_attribute("dir") {
-                reader.missing(node, "the attribute `dir`: a directory on the file system");
-            }
+            let dir = reader.required(node, "dir", ": a directory on the file system");
             let amount = amount(reader, node);
-            let dir = reader.word(node, "dir")?;
+            let dir = dir?;
             reference::check(reader, "dir", &dir);
             Some(DeclaredEffect::Disk { dir, amount: amount? })
         }
@@ -89,30 +87,27 @@ fn report_without_effect(reader: &mut ElementReader<'_>, node: Node<'_, '_>, kin
     let unused = known.filter(|name| !COMMON.contains(name) && !used.contains(name));
     let unused = unused.chain((!kind.lasts()).then_some(&"for"));
     for name in unused {
-        let Some(attribute) = node.attribute_node(*name) else { continue };
+        let Some(span) = ElementReader::name_span(node, name) else { continue };
         let message = format!("`{name}` has no effect on a fault of the kind `{}`", kind.as_str());
-        let label = reader.source.label(Span::new(attribute.range_qname()), "");
         let note = format!("this kind has {}", quoted(used.iter().copied(), ", "));
-        reader.report(Diagnostic::error("wrong-type", message).label(label).note(note));
+        reader.report(reader.error("wrong-type", span, message).note(note));
     }
     let range = |name| node.attribute(name).is_some_and(|value: &str| value.contains(".."));
     if !matches!(kind, FaultKind::Network | FaultKind::Values)
-        && let Some(seed) = node.attribute_node("seed")
+        && let Some(seed) = ElementReader::name_span(node, "seed")
         && !range("at")
         && !range("for")
     {
-        let label = reader.source.label(Span::new(seed.range_qname()), "");
         let message = "`seed` has no effect without a range in `at` or `for`";
-        reader.report(Diagnostic::error("wrong-type", message).label(label));
+        reader.report(reader.error("wrong-type", seed, message));
     }
 }
 
 fn target(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredTarget> {
-    if !node.has_attribute("fixture") {
-        reader.missing(node, "the attribute `fixture`: the fixture whose processes are affected");
-    }
+    let detail = ": the fixture whose processes are affected";
+    let fixture = reader.required(node, "fixture", detail);
     let process = reader.word(node, "process").map(|process| process.value);
-    Some(DeclaredTarget { fixture: reader.word(node, "fixture")?, process })
+    Some(DeclaredTarget { fixture: fixture?, process })
 }
 
 fn amount(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<FaultAmount> {
@@ -120,12 +115,9 @@ fn amount(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<FaultAmo
         reader.missing(node, "one of the attributes `size` and `leave`");
         return None;
     }
-    match reader.word(node, "size") {
-        Some(text) => size(reader, "size", &text, 1).map(FaultAmount::Size),
-        None => {
-            let text = reader.word(node, "leave")?;
-            size(reader, "leave", &text, 0).map(FaultAmount::Leave)
-        }
+    match node.has_attribute("size") {
+        true => size(reader, node, "size", 1).map(FaultAmount::Size),
+        false => size(reader, node, "leave", 0).map(FaultAmount::Leave),
     }
 }
 
@@ -144,10 +136,9 @@ fn network(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Declare
         _ => refuses.then_some("with `refuse`"),
     };
     for (name, reason) in NETWORK.iter().filter_map(|name| Some((name, unused(name)?))) {
-        let Some(attribute) = node.attribute_node(*name) else { continue };
-        let label = reader.source.label(Span::new(attribute.range_qname()), "");
+        let Some(span) = ElementReader::name_span(node, name) else { continue };
         let message = format!("`{name}` has no effect {reason}");
-        reader.report(Diagnostic::error("wrong-type", message).label(label));
+        reader.report(reader.error("wrong-type", span, message));
     }
     let port = reader.word(node, "port");
     if let Some(port) = &port
@@ -156,13 +147,10 @@ fn network(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Declare
     {
         reader.wrong("port", port, "is not a port", Some("write `8080` or `${port:camera}`"));
     }
-    let micros = |time: Option<Duration>| {
-        time.map_or(0, |time| u64::try_from(time.as_micros()).unwrap_or(u64::MAX))
-    };
     let fault = NetworkFault {
         has_port: port.is_some(),
-        delay_us: micros(reader.duration(node, "delay")),
-        jitter_us: micros(reader.duration(node, "jitter")),
+        delay_us: reader.duration(node, "delay").map_or(0, micros),
+        jitter_us: reader.duration(node, "jitter").map_or(0, micros),
         loss_ppm: share(reader, node, "loss"),
         duplicate_ppm: share(reader, node, "duplicate"),
         reorder_ppm: share(reader, node, "reorder"),

@@ -6,7 +6,7 @@ use roxmltree::Node;
 use rtf_model::FaultTime;
 
 use super::reader::ElementReader;
-use super::{DurationError, Spanned, parse_duration};
+use super::{DurationError, parse_duration};
 
 /// Units of sizes.
 const UNITS: [(&str, u64); 8] = [
@@ -26,68 +26,52 @@ const RATES: [(&str, u64); 4] =
 
 /// The share of the time in which slow processes may run, in percent.
 pub(super) fn percent(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<u32> {
-    let Some(cpu) = reader.word(node, "cpu") else {
+    if reader.word(node, "cpu").is_none() {
         reader.missing(node, "the attribute `cpu`: the share of the time, for example `20%`");
         return None;
-    };
-    let percent = cpu.value.strip_suffix('%').and_then(|number| number.trim().parse::<u32>().ok());
-    let percent = percent.filter(|percent| (1..=99).contains(percent));
-    if percent.is_none() {
-        reader.wrong("cpu", &cpu, "is not a percentage from `1%` to `99%`", None);
     }
-    percent
+    let parse = |text: &str| text.strip_suffix('%')?.trim().parse().ok();
+    let parse = |text: &str| parse(text).filter(|percent| (1..=99).contains(percent));
+    reader.parsed(node, "cpu", parse, ("is not a percentage from `1%` to `99%`", None))
 }
 
 /// A size in bytes, at least `min`.
 pub(super) fn size(
     reader: &mut ElementReader<'_>,
+    node: Node<'_, '_>,
     name: &str,
-    text: &Spanned<String>,
     min: u64,
 ) -> Option<u64> {
-    let size = parse_size(&text.value).filter(|size| *size >= min);
-    if size.is_none() {
-        let hint = "write it like `500MB`, `2GiB` or `64KiB`";
-        reader.wrong(name, text, "is not a size", Some(hint));
-    }
-    size
+    let parse = |text: &str| parse_size(text).filter(|size| *size >= min);
+    let hint = "write it like `500MB`, `2GiB` or `64KiB`";
+    reader.parsed(node, name, parse, ("is not a size", Some(hint)))
 }
 
 fn parse_size(text: &str) -> Option<u64> {
-    if text == "0" {
-        return Some(0);
-    }
+    if text == "0" { Some(0) } else { parse_units(text, &UNITS) }
+}
+
+/// A whole number with the first of the units that fits.
+fn parse_units(text: &str, units: &[(&str, u64)]) -> Option<u64> {
     let (number, factor) =
-        UNITS.iter().find_map(|(unit, factor)| Some((text.strip_suffix(unit)?, *factor)))?;
+        units.iter().find_map(|(unit, factor)| Some((text.strip_suffix(unit)?, *factor)))?;
     number.trim_end().parse::<u64>().ok()?.checked_mul(factor)
 }
 
 /// A percentage, in parts per million.
 pub(super) fn share(reader: &mut ElementReader<'_>, node: Node<'_, '_>, name: &str) -> u32 {
-    let Some(text) = reader.word(node, name) else { return 0 };
-    let percent = text.value.strip_suffix('%').and_then(|it| it.trim_end().parse::<f64>().ok());
-    match percent.filter(|percent| (0.0..=100.0).contains(percent)) {
-        Some(percent) => (percent * 1e4).round() as u32,
-        None => {
-            reader.wrong(name, &text, "is not a percentage from `0%` to `100%`", None);
-            0
-        }
-    }
+    let parse = |text: &str| text.strip_suffix('%')?.trim_end().parse::<f64>().ok();
+    let parse = |text: &str| parse(text).filter(|percent| (0.0..=100.0).contains(percent));
+    let expected = ("is not a percentage from `0%` to `100%`", None);
+    let percent = reader.parsed(node, name, parse, expected).unwrap_or_default();
+    (percent * 1e4).round() as u32
 }
 
 /// A bandwidth, in bits per second.
 pub(super) fn rate(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<u64> {
-    let text = reader.word(node, "rate")?;
-    let parsed = RATES.iter().find_map(|(unit, factor)| {
-        let number = text.value.strip_suffix(unit)?.trim_end().parse::<u64>().ok()?;
-        number.checked_mul(*factor)
-    });
-    let rate = parsed.filter(|rate| *rate > 0);
-    if rate.is_none() {
-        let hint = "write it like `500kbit` or `10Mbit`, per second";
-        reader.wrong("rate", &text, "is not a bandwidth", Some(hint));
-    }
-    rate
+    let parse = |text: &str| parse_units(text, &RATES).filter(|rate| *rate > 0);
+    let hint = "write it like `500kbit` or `10Mbit`, per second";
+    reader.parsed(node, "rate", parse, ("is not a bandwidth", Some(hint)))
 }
 
 /// Reads a time, or a range of times: `1s..3s`.
@@ -97,20 +81,18 @@ pub(super) fn time(
     name: &str,
     min: Duration,
 ) -> Option<FaultTime> {
-    let text = reader.word(node, name)?;
-    let (from, to) = text.value.split_once("..").unwrap_or((&text.value, &text.value));
-    let times = [from, to].map(|time| parse_time(time).filter(|time| *time >= min));
-    match times {
-        [Some(from), Some(to)] if from <= to => {
-            let micros = |time: Duration| u64::try_from(time.as_micros()).unwrap_or(u64::MAX);
-            Some(FaultTime { from_us: micros(from), to_us: micros(to) })
-        }
-        _ => {
-            let hint = "write it like `250ms` or `2s`, or `1s..3s` for a random time";
-            reader.wrong(name, &text, "is not a duration or a range", Some(hint));
-            None
-        }
-    }
+    let parse = |text: &str| {
+        let (from, to) = text.split_once("..").unwrap_or((text, text));
+        let [from, to] = [from, to].map(|time| parse_time(time).filter(|time| *time >= min));
+        let (from, to) = from.zip(to).filter(|(from, to)| from <= to)?;
+        Some(FaultTime { from_us: micros(from), to_us: micros(to) })
+    };
+    let hint = "write it like `250ms` or `2s`, or `1s..3s` for a random time";
+    reader.parsed(node, name, parse, ("is not a duration or a range", Some(hint)))
+}
+
+pub(super) fn micros(time: Duration) -> u64 {
+    u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
 }
 
 /// A duration that may be zero.

@@ -4,12 +4,11 @@
 use std::time::Duration;
 
 use roxmltree::Node;
-use rtf_model::Diagnostic;
 
 use super::provide::{self, Provider};
 use super::reader::ElementReader;
 use super::schema::{self, check};
-use super::{DeclaredFixture, FixtureKind, Span, env, process, reset, test};
+use super::{DeclaredFixture, FixtureKind, env, process, reset, test};
 
 /// Reads a `<fixture>`; `None` if it names neither a plug-in nor a process.
 pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredFixture> {
@@ -26,53 +25,39 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option
             report_process_attribute(reader, node, name);
         }
     }
-    let name = reader.word(node, "name");
-    let depends = node.has_attribute("depends").then(|| reader.words(node, "depends"));
-    let setup = reader.duration(node, "timeout");
-    let check = reader.duration(node, "check-timeout");
-    let notify = reader.duration(node, "notify-timeout");
-    let teardown = reader.duration(node, "teardown-timeout");
-    let restarts = reader.number(node, "restarts", 0);
-    let restart_delay = restart_delay(reader, node);
-    let check_every = reader.duration(node, "check-every");
-    let env = env::read(reader, node);
     let provider = match (is_process, is_attached) {
         (true, true) => Provider::Attached,
         (true, false) if node.has_attribute("host") => Provider::Remote,
         (true, false) => Provider::Process,
         (false, _) => Provider::Plugin,
     };
-    let provides = provide::read(reader, node, provider);
-    let reset = reset::read(reader, node);
-    let body = match (is_process, is_attached) {
-        (true, true) => FixtureKind::Attached(process::attached(reader, node)),
-        (true, false) => FixtureKind::Process(Box::new(process::read(reader, node))),
-        (false, _) => FixtureKind::Plugin(test::plugin(reader, node)?),
-    };
-    let span = ElementReader::tag(node);
     Some(DeclaredFixture {
-        span,
-        name,
-        depends,
-        body,
-        provides,
-        reset,
-        env,
-        setup,
-        check,
-        notify,
-        teardown,
-        restarts,
-        restart_delay,
-        check_every,
+        span: ElementReader::tag(node),
+        name: reader.word(node, "name"),
+        depends: node.has_attribute("depends").then(|| reader.words(node, "depends")),
+        setup: reader.duration(node, "timeout"),
+        check: reader.duration(node, "check-timeout"),
+        notify: reader.duration(node, "notify-timeout"),
+        teardown: reader.duration(node, "teardown-timeout"),
+        restarts: reader.number(node, "restarts", 0),
+        restart_delay: restart_delay(reader, node),
+        check_every: reader.duration(node, "check-every"),
+        env: env::read(reader, node),
+        provides: provide::read(reader, node, provider),
+        reset: reset::read(reader, node),
+        body: match (is_process, is_attached) {
+            (true, true) => FixtureKind::Attached(process::attached(reader, node)),
+            (true, false) => FixtureKind::Process(Box::new(process::read(reader, node))),
+            (false, _) => FixtureKind::Plugin(test::plugin(reader, node)?),
+        },
     })
 }
 
 /// Reports an attribute that has no meaning for a plug-in, which defines its own set-up.
 fn report_process_attribute(reader: &mut ElementReader<'_>, node: Node<'_, '_>, name: &str) {
-    let Some(attribute) = node.attribute_node(name).filter(|found| found.value() != "false") else {
-        return;
-    };
+    let is_set = node.attribute(name).is_some_and(|value| value != "false");
+    let span = ElementReader::name_span(node, name).filter(|_| is_set);
+    let Some(span) = span else { return };
     let (message, hint) = match name {
         "attach" => (
             "only `type=\"process\"` can be attached",
@@ -83,8 +68,7 @@ fn report_process_attribute(reader: &mut ElementReader<'_>, node: Node<'_, '_>, 
             "write a `<command>` that is started there",
         ),
     };
-    let label = reader.source.label(Span::new(attribute.range_qname()), "");
-    reader.report(Diagnostic::error("wrong-type", message).label(label).hint(hint));
+    reader.report(reader.error("wrong-type", span, message).hint(hint));
 }
 
 /// The maximum delay before any restart, also after it has doubled several times.
@@ -114,9 +98,7 @@ fn is_process(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> bool {
     if has_command {
         let message = "a fixture with a `<command>` has the type `process`";
         let span = declared.map_or_else(|| ElementReader::tag(node), |declared| declared.span);
-        let problem = Diagnostic::error("wrong-type", message)
-            .label(reader.source.label(span, ""))
-            .hint("write `type=\"process\"`");
+        let problem = reader.error("wrong-type", span, message).hint("write `type=\"process\"`");
         reader.report(problem);
     }
     has_command

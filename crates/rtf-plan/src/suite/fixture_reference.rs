@@ -3,8 +3,10 @@
 //! The planner checks references, because only it knows all fixtures. `rtf-engine` replaces
 //! them whenever a process starts.
 
+use std::borrow::Cow;
+
 use super::Span;
-use crate::placeholder::{Segment, segments};
+use crate::placeholder::{self, Segment, segments};
 
 pub(super) const OPEN: &str = "${fixture:";
 
@@ -43,19 +45,8 @@ pub fn mentions(text: &str) -> bool {
 
 /// Replaces each reference by the result of `value`, which gets its name, `simulator.port`.
 /// A reference without a result is kept.
-pub fn expand<'v>(text: &str, value: impl Fn(&str) -> Option<std::borrow::Cow<'v, str>>) -> String {
-    let mut expanded = String::with_capacity(text.len());
-    for segment in segments(text, OPEN) {
-        match segment {
-            Segment::Text(text) => expanded += text,
-            Segment::Placeholder(name, start) => match value(name) {
-                Some(value) => expanded += &value,
-                None => expanded += &text[start..start + OPEN.len() + name.len() + 1],
-            },
-            Segment::Unclosed(start) => expanded += &text[start..],
-        }
-    }
-    expanded
+pub fn expand<'v>(text: &str, value: impl Fn(&str) -> Option<Cow<'v, str>>) -> String {
+    placeholder::replace(text, OPEN, value)
 }
 
 /// Returns the names of all references of a text: `simulator.port`.

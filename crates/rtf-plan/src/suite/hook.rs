@@ -96,9 +96,8 @@ pub(super) fn report_plugin_parts(
         ("param", format!("write the arguments after the program, in {command}")),
     ];
     for (name, hint) in hints {
-        let Some(attribute) = node.attribute_node(name) else { continue };
+        let Some(span) = ElementReader::name_span(node, name) else { continue };
         let message = format!("`{name}` has no effect with {command}");
-        let label = reader.source.label(Span::new(attribute.range_qname()), "");
-        reader.report(Diagnostic::error("without-effect", message).label(label).hint(hint));
+        reader.report(reader.error("without-effect", span, message).hint(hint));
     }
 }

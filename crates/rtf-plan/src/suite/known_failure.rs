@@ -50,8 +50,8 @@ pub(super) fn read(
         for name in ["issue", "until"] {
             let Some(attribute) = reader.attribute(node, name) else { continue };
             let message = format!("`{name}` has no effect without `expect`");
-            let problem = Diagnostic::error("without-effect", message)
-                .label(reader.source.label(attribute.span, ""))
+            let problem = reader
+                .error("without-effect", attribute.span, message)
                 .hint("add `expect=\"failed\"`");
             reader.report(problem);
         }

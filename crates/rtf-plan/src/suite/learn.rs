@@ -3,7 +3,6 @@
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 use roxmltree::Node;
-use rtf_model::Diagnostic;
 
 use super::known_failure::parse_day;
 use super::reader::ElementReader;
@@ -29,8 +28,7 @@ pub(super) fn read(reader: &mut ElementReader<'_>, test: Node<'_, '_>) -> Vec<Le
         let Some(learn) = element(reader, node) else { continue };
         if found.iter().any(|known| known.measurement == learn.measurement) {
             let message = format!("a second `<learn>` for `{}`", learn.measurement);
-            let label = reader.source.label(learn.span, "");
-            reader.report(Diagnostic::error("duplicate", message).label(label));
+            reader.report(reader.error("duplicate", learn.span, message));
             continue;
         }
         found.push(learn);
@@ -45,14 +43,8 @@ fn element(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<LearnPl
     }
     let sides =
         [("low", LearnedSides::Low), ("high", LearnedSides::High), ("both", LearnedSides::Both)];
-    let since = reader.word(node, "since").and_then(|text| {
-        let since = parse_since(&text.value);
-        if since.is_none() {
-            let hint = "write it like `2027-01-31` or `2027-01-31T12:00:00Z`";
-            reader.wrong("since", &text, "is not a time", Some(hint));
-        }
-        since
-    });
+    let hint = "write it like `2027-01-31` or `2027-01-31T12:00:00Z`";
+    let since = reader.parsed(node, "since", parse_since, ("is not a time", Some(hint)));
     Some(LearnPlan {
         span: ElementReader::tag(node),
         measurement: reader.word(node, "measurement")?.value,
@@ -70,11 +62,8 @@ fn parse_since(text: &str) -> Option<Timestamp> {
 }
 
 fn sigma(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> f64 {
-    let Some(text) = reader.word(node, "sigma") else { return SIGMA };
-    let number = text.value.parse::<f64>().ok();
-    number.filter(|sigma| *sigma > 0.0 && *sigma <= MAX_SIGMA).unwrap_or_else(|| {
-        let hint = format!("a number above 0, at most {MAX_SIGMA}");
-        reader.wrong("sigma", &text, "is not a number of deviations", Some(&hint));
-        SIGMA
-    })
+    let hint = format!("a number above 0, at most {MAX_SIGMA}");
+    let parse = |text: &str| text.parse().ok().filter(|it| *it > 0.0 && *it <= MAX_SIGMA);
+    let expected = ("is not a number of deviations", Some(hint.as_str()));
+    reader.parsed(node, "sigma", parse, expected).unwrap_or(SIGMA)
 }

@@ -63,8 +63,7 @@ pub(super) fn read(reader: &mut ElementReader<'_>, test: Node<'_, '_>) -> Option
         && is_valid
     {
         let message = "`<matrix-exclude>` has no effect without `<matrix>`";
-        let label = reader.source.label(first.span, "");
-        reader.report(Diagnostic::error("without-effect", message).label(label));
+        reader.report(reader.error("without-effect", first.span, message));
     }
     (is_valid && !matrix.dimensions.is_empty()).then_some(matrix)
 }
@@ -74,8 +73,8 @@ fn dimension(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Matri
         let given = ["name", "values"].into_iter().find(|name| node.has_attribute(*name));
         if let Some(attribute) = given.and_then(|name| reader.attribute(node, name)) {
             let message = "a `<matrix>` has either `values-from`, or `name` and `values`";
-            let problem = Diagnostic::error("conflicting-attributes", message)
-                .label(reader.source.label(attribute.span, ""))
+            let problem = reader
+                .error("conflicting-attributes", attribute.span, message)
                 .hint("the header row of the file names the parameters");
             reader.report(problem);
             return None;
@@ -126,8 +125,7 @@ pub fn values(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Vec<
             invalid_value(&word.value)
         };
         if let Some(message) = problem {
-            let label = reader.source.label(word.span, "");
-            reader.report(Diagnostic::error("invalid-value", message).label(label));
+            reader.report(reader.error("invalid-value", word.span, message));
             is_valid = false;
         }
         values.push(word.value);

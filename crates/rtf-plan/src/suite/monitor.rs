@@ -10,10 +10,7 @@ use super::{DeclaredEnvelope, DeclaredMonitor};
 /// Reads a `<monitor>`; `None` if it has no name or formula.
 pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredMonitor> {
     check(reader, node, &schema::MONITOR);
-    if !node.has_attribute("name") {
-        reader.missing(node, "the attribute `name`");
-    }
-    let name = reader.word(node, "name");
+    let name = reader.required(node, "name", "");
     let severity = reader.choice(node, "severity", &FindingSeverity::ALL);
     let Some(formula) = reader.text(node) else {
         reader.missing(node, "a formula as its text");
@@ -29,10 +26,7 @@ pub(super) fn read_envelope(
     node: Node<'_, '_>,
 ) -> Option<DeclaredEnvelope> {
     check(reader, node, &schema::ENVELOPE);
-    if !node.has_attribute("file") {
-        reader.missing(node, "the attribute `file`");
-    }
-    let file = reader.word(node, "file")?;
+    let file = reader.required(node, "file", "")?;
     Some(DeclaredEnvelope { span: ElementReader::tag(node), file })
 }
 

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 use super::Span;
-use crate::placeholder::{Segment, segments};
+use crate::placeholder;
 
 pub(super) const OPEN: &str = "${port:";
 
@@ -43,18 +43,7 @@ pub fn mentions(text: &str) -> bool {
 
 /// Replaces each port by the result of `port`, which gets its name.
 pub fn expand(text: &str, port: impl Fn(&str) -> String) -> String {
-    if !mentions(text) {
-        return text.to_owned();
-    }
-    let mut expanded = String::with_capacity(text.len());
-    for segment in segments(text, OPEN) {
-        match segment {
-            Segment::Text(text) => expanded += text,
-            Segment::Placeholder(name, _) => expanded += &port(name),
-            Segment::Unclosed(start) => expanded += &text[start..],
-        }
-    }
-    expanded
+    placeholder::replace(text, OPEN, |name| Some(port(name).into()))
 }
 
 #[cfg(test)]

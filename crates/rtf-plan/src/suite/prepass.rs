@@ -129,32 +129,25 @@ fn markup_at(text: &str, open: usize) -> (Markup, Option<usize>) {
 
 /// Returns the offset after the `>` that ends a tag, skipping quoted text.
 fn tag_end(tag: &str) -> Option<usize> {
-    let mut quote = None;
-    for (at, byte) in tag.bytes().enumerate() {
-        match quote {
-            Some(open) if open == byte => quote = None,
-            Some(_) => {}
-            None if byte == b'"' || byte == b'\'' => quote = Some(byte),
-            None if byte == b'>' => return Some(at + 1),
-            None => {}
-        }
-    }
-    None
+    unquoted(tag).find(|(_, byte)| *byte == b'>').map(|(at, _)| at + 1)
 }
 
 /// Counts the `=` outside of quotes.
 fn count_attributes(tag: &str) -> usize {
+    unquoted(tag).filter(|(_, byte)| *byte == b'=').count()
+}
+
+/// Returns the bytes outside of quoted text, and their offsets.
+fn unquoted(tag: &str) -> impl Iterator<Item = (usize, u8)> {
     let mut quote = None;
-    let mut count = 0;
-    for byte in tag.bytes() {
+    tag.bytes().enumerate().filter(move |(_, byte)| {
         match quote {
-            Some(open) if open == byte => quote = None,
-            Some(_) => {}
-            None if byte == b'"' || byte == b'\'' => quote = Some(byte),
-            None => count += usize::from(byte == b'='),
+            Some(open) if open == *byte => quote = None,
+            None if matches!(byte, b'"' | b'\'') => quote = Some(*byte),
+            open => return open.is_none(),
         }
-    }
-    count
+        false
+    })
 }
 
 /// Finds the first `--` in a comment's body, or a `-` directly before its end.

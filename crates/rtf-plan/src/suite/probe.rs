@@ -2,7 +2,6 @@
 
 use regex::Regex;
 use roxmltree::Node;
-use rtf_model::Diagnostic;
 
 use super::command::words;
 use super::reader::ElementReader;
@@ -105,8 +104,7 @@ pub(super) fn read_pattern(
         Ok(pattern) => Some(pattern),
         Err(error) => {
             let message = format!("`{name}` is not a regular expression: `{}`", value.value);
-            let label = reader.source.label(value.span, "");
-            let problem = Diagnostic::error("invalid-value", message).label(label);
+            let problem = reader.error("invalid-value", value.span, message);
             reader.report(problem.note(error.to_string()));
             None
         }
@@ -116,8 +114,7 @@ pub(super) fn read_pattern(
 /// Reports a file of a process on another machine.
 pub(super) fn report_local_file(reader: &mut ElementReader<'_>, span: Span, hint: &str) {
     let message = "`file` checks this machine, and the fixture runs on another one";
-    let problem =
-        Diagnostic::error("other-machine", message).label(reader.source.label(span, "")).hint(hint);
+    let problem = reader.error("other-machine", span, message).hint(hint);
     reader.report(problem);
 }
 
@@ -149,8 +146,8 @@ fn report_several(
     declared: Vec<&str>,
 ) {
     let message = format!("`<{}>` has several probes: {}", schema.name, quoted(declared, " and "));
-    let problem = Diagnostic::error("several-probes", message)
-        .label(reader.source.label(ElementReader::tag(node), ""))
+    let problem = reader
+        .error("several-probes", ElementReader::tag(node), message)
         .hint(format!("write a separate `<{}>` for each; all of them must pass", schema.name));
     reader.report(problem);
 }
@@ -161,8 +158,7 @@ fn report_without_effect(
     modifier: &str,
     name: &str,
 ) {
-    let Some(attribute) = node.attribute_node(modifier) else { return };
+    let Some(span) = ElementReader::name_span(node, modifier) else { return };
     let message = format!("`{modifier}` has no effect with `{name}`");
-    let label = reader.source.label(Span::new(attribute.range_qname()), "");
-    reader.report(Diagnostic::error("without-effect", message).label(label));
+    reader.report(reader.error("without-effect", span, message));
 }

@@ -1,7 +1,6 @@
 //! The children of `<fixture type="process">`: command, probes and stop.
 
 use roxmltree::Node;
-use rtf_model::Diagnostic;
 
 use super::reader::ElementReader;
 use super::schema::{self, check};
@@ -67,21 +66,15 @@ fn host(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Spanned<St
     }
     if node.parent().and_then(|suite| suite.attribute("isolate")) == Some("network") {
         let message = "a suite with a private network cannot reach another machine";
-        let label = reader.source.label(host.span, "");
-        reader.report(Diagnostic::error("other-machine", message).label(label));
+        reader.report(reader.error("other-machine", host.span, message));
     }
     Some(host)
 }
 
 fn stop_signal(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<i32> {
-    let attribute = reader.word(node, "signal")?;
-    let number = signal::number(&attribute.value);
-    if number.is_none() {
-        let names: Vec<_> = signal::names().map(|name| format!("`{name}`")).collect();
-        let hint = format!("valid are {} and the numbers 1 to 31", names.join(", "));
-        reader.wrong("signal", &attribute, "is not a signal", Some(&hint));
-    }
-    number
+    let names: Vec<_> = signal::names().map(|name| format!("`{name}`")).collect();
+    let hint = format!("valid are {} and the numbers 1 to 31", names.join(", "));
+    reader.parsed(node, "signal", signal::number, ("is not a signal", Some(&hint)))
 }
 
 fn exit_codes(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Vec<i32> {
@@ -113,8 +106,7 @@ pub(super) fn attached(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> De
         let Some(probe) = probe::read(reader, child, schema) else { continue };
         if matches!(probe.kind, DeclaredProbeKind::Log(_)) {
             let message = "`rtf` cannot read the output of an attached process";
-            let label = reader.source.label(probe.span, "");
-            reader.report(Diagnostic::error("no-output", message).label(label));
+            reader.report(reader.error("no-output", probe.span, message));
         } else {
             list.push(probe);
         }

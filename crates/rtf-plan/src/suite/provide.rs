@@ -35,8 +35,8 @@ pub(super) fn read(
         let (Some(name), Some(source)) = (name(reader, node), source) else { continue };
         if let Some(other) = values.iter().find(|other| other.name.value == name.value) {
             let message = format!("the value `{}` is declared twice", name.value);
-            let problem = Diagnostic::error("repeated-value", message)
-                .label(reader.source.label(name.span, ""))
+            let problem = reader
+                .error("repeated-value", name.span, message)
                 .label(reader.source.label(other.name.span, "the first one"));
             reader.report(problem);
             continue;
@@ -47,12 +47,7 @@ pub(super) fn read(
 }
 
 fn name(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Spanned<String>> {
-    let Some(name) = reader.word(node, "name") else {
-        if !node.has_attribute("name") {
-            reader.missing(node, "the attribute `name`");
-        }
-        return None;
-    };
+    let name = reader.required(node, "name", "")?;
     if !FixtureProvided::is_name(&name.value) {
         let hint = format!(
             "a name is a letter, followed by letters, digits, `-` and `_`: at most {} characters",
@@ -80,8 +75,8 @@ fn source(
         (Provider::Plugin, []) => Some(DeclaredValueSource::Plugin),
         (Provider::Plugin, [(name, value), ..]) => {
             let message = format!("`{name}` is for `type=\"process\"`");
-            let problem = Diagnostic::error("wrong-type", message)
-                .label(reader.source.label(value.span, ""))
+            let problem = reader
+                .error("wrong-type", value.span, message)
                 .hint("a plug-in provides its values itself, with `provide(name, value)`");
             reader.report(problem);
             None
@@ -108,8 +103,7 @@ fn process_source(
     match (name, provider) {
         ("log", Provider::Attached) => {
             let message = "`rtf` cannot read the output of an attached process";
-            let label = reader.source.label(value.span, "");
-            reader.report(Diagnostic::error("no-output", message).label(label));
+            reader.report(reader.error("no-output", value.span, message));
             None
         }
         ("log", _) => pattern(reader, name, value).map(DeclaredValueSource::Log),

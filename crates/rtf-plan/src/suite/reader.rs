@@ -21,6 +21,11 @@ pub struct ElementReader<'a> {
 }
 
 impl ElementReader<'_> {
+    /// Returns an error at a place that needs no explanation.
+    pub fn error(&self, code: &str, span: Span, message: impl Into<String>) -> Diagnostic {
+        self.source.error(code, span, message)
+    }
+
     pub fn report(&mut self, problem: Diagnostic) {
         self.problems.push(problem);
     }
@@ -33,6 +38,11 @@ impl ElementReader<'_> {
             .find(|c: char| c.is_whitespace() || c == '/' || c == '>')
             .unwrap_or_default();
         Span::new(start..start + 1 + name)
+    }
+
+    /// Returns the position of an attribute's name.
+    pub fn name_span(node: Node<'_, '_>, name: &str) -> Option<Span> {
+        Some(Span::new(node.attribute_node(name)?.range_qname()))
     }
 
     /// Returns the position of a text without the white space around it.
@@ -79,6 +89,35 @@ impl ElementReader<'_> {
         Some(Spanned::new(attribute.value.trim().to_owned(), attribute.span))
     }
 
+    /// Reads a word, and reports a missing attribute; `detail` follows its name in the message.
+    pub fn required(
+        &mut self,
+        node: Node<'_, '_>,
+        name: &str,
+        detail: &str,
+    ) -> Option<Spanned<String>> {
+        if !node.has_attribute(name) {
+            self.missing(node, &format!("the attribute `{name}`{detail}"));
+        }
+        self.word(node, name)
+    }
+
+    /// Reads a word that `parse` accepts, and reports another one: what it is, and a hint.
+    pub fn parsed<T>(
+        &mut self,
+        node: Node<'_, '_>,
+        name: &str,
+        parse: impl FnOnce(&str) -> Option<T>,
+        (what, hint): (&str, Option<&str>),
+    ) -> Option<T> {
+        let text = self.word(node, name)?;
+        let value = parse(&text.value);
+        if value.is_none() {
+            self.wrong(name, &text, what, hint);
+        }
+        value
+    }
+
     /// Reads an attribute that must not be blank, with the blanks at its ends.
     pub fn blank_preserving(&mut self, node: Node<'_, '_>, name: &str) -> Option<Spanned<String>> {
         let attribute = self.attribute(node, name)?;
@@ -91,19 +130,17 @@ impl ElementReader<'_> {
 
     pub fn duration(&mut self, node: Node<'_, '_>, name: &str) -> Option<Duration> {
         let attribute = self.attribute(node, name)?;
-        match parse_duration(&attribute.value) {
-            Ok(duration) => Some(duration),
+        let parsed = parse_duration(&attribute.value);
+        match &parsed {
+            Ok(_) => {}
             Err(DurationError::Malformed) => {
                 let hint = "write it like `250ms`, `1.5s`, `2min` or `1h 30m`; \
                             a bare number is seconds";
                 self.wrong(name, &attribute, "is not a duration", Some(hint));
-                None
             }
-            Err(error) => {
-                self.wrong(name, &attribute, &error.to_string(), None);
-                None
-            }
+            Err(error) => self.wrong(name, &attribute, &error.to_string(), None),
         }
+        parsed.ok()
     }
 
     pub fn boolean(&mut self, node: Node<'_, '_>, name: &str) -> Option<bool> {
@@ -169,12 +206,8 @@ impl ElementReader<'_> {
         } else {
             format!("`{name}` {what}: `{}`", value.value.trim())
         };
-        let problem = Diagnostic::error("invalid-value", message);
-        let problem = problem.label(self.source.label(value.span, ""));
-        self.report(match hint {
-            Some(hint) => problem.hint(hint),
-            None => problem,
-        });
+        let problem = self.error("invalid-value", value.span, message);
+        self.report(Diagnostic { hint: hint.map(str::to_owned), ..problem });
     }
 
     /// Reports a repeated element. `seen` is the position of the first one.
@@ -193,9 +226,8 @@ impl ElementReader<'_> {
     /// Reports a missing part of an element.
     pub fn missing(&mut self, node: Node<'_, '_>, what: &str) {
         let name = node.tag_name().name();
-        let problem = Diagnostic::error("incomplete", format!("`<{name}>` needs {what}"));
-        let label = self.source.label(Self::tag(node), "");
-        self.report(problem.label(label));
+        let message = format!("`<{name}>` needs {what}");
+        self.report(self.error("incomplete", Self::tag(node), message));
     }
 }
 

@@ -51,18 +51,15 @@ fn record_port(reader: &mut ElementReader<'_>, name: &str, span: Span) {
             "a name starts with a letter, followed by letters, digits, `-` and `_`: \
              at most {MAX_PORT_NAME_LENGTH} characters"
         );
-        let label = reader.source.label(span, "");
-        let problem = Diagnostic::error("invalid-port", message).label(label).note(expected);
+        let problem = reader.error("invalid-port", span, message).note(expected);
         return reader.report(problem);
     }
     let variable = SuitePort::variable(name);
     let same = reader.ports.add(variable.clone(), name, span);
     if let Some((other, first)) = same.filter(|(other, _)| other != name) {
         let message = format!("the ports `{other}` and `{name}` would both be in `{variable}`");
-        let problem = Diagnostic::error("invalid-port", message)
-            .label(reader.source.label(span, ""))
-            .label(reader.source.label(*first, "the other one"));
-        reader.report(problem);
+        let other = reader.source.label(*first, "the other one");
+        reader.report(reader.source.error("invalid-port", span, message).label(other));
     }
 }
 
@@ -77,8 +74,9 @@ fn warn_of_misspelling(reader: &mut ElementReader<'_>, value: &Spanned<String>) 
         let similar = nearest(word, std::iter::once("port")).is_some();
         if word != "port" && letters && named && similar {
             let span = position(reader, value, start..start + 3 + word.len());
-            let problem = Diagnostic::warning("no-port", format!("`${{{word}:` means itself"))
-                .label(reader.source.label(span, ""))
+            let problem = reader
+                .source
+                .warning("no-port", span, format!("`${{{word}:` means itself"))
                 .hint(format!("did you mean `{}`?", port_reference::OPEN));
             reader.report(problem);
         }

@@ -50,10 +50,6 @@ fn report_invalid(
     hint: Option<&str>,
 ) {
     let message = format!("`{}` {what}", word.value);
-    let label = reader.source.label(word.span, "");
-    let problem = Diagnostic::error("invalid-value", message).label(label);
-    reader.report(match hint {
-        Some(hint) => problem.hint(hint),
-        None => problem,
-    });
+    let problem = reader.error("invalid-value", word.span, message);
+    reader.report(Diagnostic { hint: hint.map(str::to_owned), ..problem });
 }

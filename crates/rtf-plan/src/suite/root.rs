@@ -158,8 +158,9 @@ fn last_text(
     let earlier = node.prev_siblings().skip(1).find(|sibling| sibling.has_tag_name(name));
     if let Some(earlier) = earlier {
         let message = format!("repeated `<{name}>`: the last one applies");
-        let problem = Diagnostic::warning("repeated-element", message)
-            .label(reader.source.label(ElementReader::tag(node), ""))
+        let problem = reader
+            .source
+            .warning("repeated-element", ElementReader::tag(node), message)
             .label(reader.source.label(ElementReader::tag(earlier), "the earlier one"));
         reader.report(problem);
     }

@@ -7,7 +7,7 @@ use rtf_model::{Diagnostic, ProcessQuantity, SignalTime, TestQuantity};
 use super::reader::ElementReader;
 use super::schema::{self, check};
 use super::{
-    DeclaredSignal, DeclaredSource, DeclaredSourceKind, SignalMiddleware, Span, Spanned, command,
+    DeclaredSignal, DeclaredSource, DeclaredSourceKind, SignalMiddleware, Spanned, command,
 };
 
 /// Reads a `<signals>`; `None` if it declares no signal.
@@ -65,15 +65,8 @@ const RECORDED_FIELD: FieldSyntax = FieldSyntax {
 };
 
 /// The attributes of a `<signal>` that only signals with certain sources have.
-const OF_COMMAND: [(&str, &str); 2] = [
-    ("time", "is only for a signal with a `<command>`"),
-    ("wait", "is only for a signal with a `<command>`"),
-];
-const OF_FIXTURE: [(&str, &str); 2] = [
-    ("of", "is only for a signal with `fixture`"),
-    ("every", "is only for a signal with `fixture`"),
-];
-const OF_FILE: [(&str, &str); 1] = [("topic", "is only for a signal with `file`")];
+const OF_COMMAND: &str = "is only for a signal with a `<command>`";
+const OF_FIXTURE: &str = "is only for a signal with `fixture`";
 
 /// Reads a `<signal>` that has its own source; `None` if it has no name or source.
 pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredSource> {
@@ -81,18 +74,17 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option
     report_second_source(reader, node);
     let attribute = SOURCE_ATTRIBUTES.into_iter().find(|name| node.has_attribute(*name));
     if attribute.is_some() {
-        report_without_effect(reader, node, &OF_COMMAND);
+        report_without_effect(reader, node, &["time", "wait"], OF_COMMAND);
     }
     if attribute != Some("fixture") {
-        report_without_effect(reader, node, &OF_FIXTURE);
+        report_without_effect(reader, node, &["of", "every"], OF_FIXTURE);
     }
     if attribute != Some("file") {
-        report_without_effect(reader, node, &OF_FILE);
+        report_without_effect(reader, node, &["topic"], "is only for a signal with `file`");
     }
     let kind = match attribute {
         Some("fixture") => {
-            let unit = [("unit", "is fixed for a signal with `fixture`")];
-            report_without_effect(reader, node, &unit);
+            report_without_effect(reader, node, &["unit"], "is fixed for a signal with `fixture`");
             fixture(reader, node)
         }
         Some("file") => recording(reader, node),
@@ -119,8 +111,8 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option
 fn report_second_source(reader: &mut ElementReader<'_>, node: Node<'_, '_>) {
     let command = node.children().find(|child| child.has_tag_name("command"));
     let command = command.map(ElementReader::tag);
-    let attribute = |name| Some(Span::new(node.attribute_node(name)?.range_qname()));
-    let sources = std::iter::once(command).chain(SOURCE_ATTRIBUTES.map(attribute));
+    let attributes = SOURCE_ATTRIBUTES.map(|name| ElementReader::name_span(node, name));
+    let sources = std::iter::once(command).chain(attributes);
     if let Some(second) = sources.flatten().nth(1) {
         let message = "a signal has one source: a `<command>`, `ros`, `ros2`, `yarp`, `file`, `test` or `fixture`";
         let label = reader.source.label(second, "a second source");
@@ -131,11 +123,12 @@ fn report_second_source(reader: &mut ElementReader<'_>, node: Node<'_, '_>) {
 fn report_without_effect(
     reader: &mut ElementReader<'_>,
     node: Node<'_, '_>,
-    attributes: &[(&str, &str)],
+    attributes: &[&str],
+    what: &str,
 ) {
-    for (name, what) in attributes {
-        let Some(attribute) = node.attribute_node(*name) else { continue };
-        let label = reader.source.label(Span::new(attribute.range_qname()), "");
+    for name in attributes {
+        let Some(span) = ElementReader::name_span(node, name) else { continue };
+        let label = reader.source.label(span, "");
         reader.report(Diagnostic::error("wrong-type", format!("`{name}` {what}")).label(label));
     }
 }
@@ -206,18 +199,16 @@ fn fixture(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Declare
 }
 
 fn signal(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<DeclaredSignal> {
-    if !node.has_attribute("name") {
-        reader.missing(node, "the attribute `name`");
-    }
-    let name = reader.word(node, "name")?;
+    let name = reader.required(node, "name", "")?;
     // Formulas quote names that are not words.
     if name.value.contains(|c: char| c.is_control() || matches!(c, '"' | '\'')) {
         let hint = "a name has no quotes and no control characters";
         reader.wrong("name", &name, "is not the name of a signal", Some(hint));
         return None;
     }
-    let unit = reader.attribute(node, "unit");
-    let unit = unit.map(|unit| Spanned::new(unit.value.trim().to_owned(), unit.span));
-    let unit = unit.unwrap_or_else(|| Spanned::new(String::new(), name.span));
+    let unit = match reader.attribute(node, "unit") {
+        Some(unit) => Spanned::new(unit.value.trim().to_owned(), unit.span),
+        None => Spanned::new(String::new(), name.span),
+    };
     Some(DeclaredSignal { name, unit })
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use rtf_model::Label;
+use rtf_model::{Diagnostic, Label};
 
 /// A range of bytes in a file. Files are far smaller than 4 GiB.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -86,6 +86,24 @@ impl SourceText {
         let (line, column) = self.line_column(start);
         let text = text.into();
         Label { file: self.name.clone(), line, column, start: start as u64, end: end as u64, text }
+    }
+
+    /// Returns an error at a place that needs no explanation.
+    #[must_use]
+    pub fn error(&self, code: &str, span: Span, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::error(code, message).label(self.label(span, ""))
+    }
+
+    /// Adds a place to a problem without one.
+    #[must_use]
+    pub fn locate(&self, problem: Diagnostic, span: Span) -> Diagnostic {
+        if problem.labels.is_empty() { problem.label(self.label(span, "")) } else { problem }
+    }
+
+    /// Returns a warning at a place that needs no explanation.
+    #[must_use]
+    pub fn warning(&self, code: &str, span: Span, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::warning(code, message).label(self.label(span, ""))
     }
 
     /// Returns the line, from 1, in which a span starts.

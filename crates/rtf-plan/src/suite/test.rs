@@ -27,8 +27,6 @@ pub(super) fn read(
     defaults: TestDefaults,
 ) -> Option<DeclaredTest> {
     check(reader, node, &schema::TEST);
-    let name = reader.word(node, "name");
-    let was = reader.word(node, "was").map(|was| was.value);
     let (declared, default) = (limits(reader, node, ""), defaults.limits);
     let limits = DeclaredLimits {
         load: declared.load.or(default.load),
@@ -52,34 +50,22 @@ pub(super) fn read(
         own_domain,
         ..inherited_settings(reader, node, defaults.settings)
     };
-    let limits = DeclaredLimits { case: cases.timeout, ..limits };
-    let cases = cases.declared.map(Box::new);
-    let tags = values(reader.words(node, "tags"));
-    let env = env::read(reader, node);
-    let learn = learn::read(reader, node);
-    let monitors = monitor::read_all(reader, node);
-    let faults = fault::read_all(reader, node);
-    let known_failure = known_failure::read(reader, node).map(Box::new);
-    let matrix = matrix::read(reader, node).map(Box::new);
-    let plugin = plugin(reader, node)?;
-    let span = ElementReader::tag(node);
-    let combination = None;
     Some(DeclaredTest {
-        span,
-        name,
-        was,
-        plugin,
-        limits,
+        span: ElementReader::tag(node),
+        name: reader.word(node, "name"),
+        was: reader.word(node, "was").map(|was| was.value),
+        limits: DeclaredLimits { case: cases.timeout, ..limits },
         settings,
-        cases,
-        tags,
-        env,
-        learn,
-        monitors,
-        faults,
-        known_failure,
-        matrix,
-        combination,
+        cases: cases.declared.map(Box::new),
+        tags: values(reader.words(node, "tags")),
+        env: env::read(reader, node),
+        learn: learn::read(reader, node),
+        monitors: monitor::read_all(reader, node),
+        faults: fault::read_all(reader, node),
+        known_failure: known_failure::read(reader, node).map(Box::new),
+        matrix: matrix::read(reader, node).map(Box::new),
+        plugin: plugin(reader, node)?,
+        combination: None,
     })
 }
 

@@ -46,10 +46,9 @@ pub(super) fn parse<'a>(
 }
 
 fn dashes_warning(source: &SourceText, first: Span, count: usize) -> Diagnostic {
-    let problem =
-        Diagnostic::warning("comment-dashes", "`--` in a comment is not legal XML; accepted")
-            .label(source.label(first, ""))
-            .hint("remove the dashes: other programs refuse the file");
+    let problem = source
+        .warning("comment-dashes", first, "`--` in a comment is not legal XML; accepted")
+        .hint("remove the dashes: other programs refuse the file");
     match count {
         1 => problem,
         2 => problem.note("one more comment of this file contains it"),
@@ -65,16 +64,12 @@ fn malformed(source: &SourceText, text: &str, error: &Error) -> Diagnostic {
         _ => offset(text, error.pos()),
     };
     let length = text[start..].chars().next().map_or(0, char::len_utf8);
-    let label = source.label(Span::new(start..start + length), "");
     let (message, hint) = match second_root(error, text, start) {
         Some(message) => (message, Some(ONE_ROOT)),
         None => (explanation(error, &text[..start]), hint(error, &text[..start])),
     };
-    let problem = Diagnostic::error("malformed-xml", message).label(label);
-    match hint {
-        Some(hint) => problem.hint(hint),
-        None => problem,
-    }
+    let problem = source.error("malformed-xml", Span::new(start..start + length), message);
+    Diagnostic { hint: hint.map(str::to_owned), ..problem }
 }
 
 /// What to do about further elements or text after the first element.

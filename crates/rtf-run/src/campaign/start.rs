@@ -111,7 +111,7 @@ fn parameter_text(parameter: &DeclaredParameter, file: &Path, sources: &SourceMa
         DeclaredParameter::Sampled { name, distribution, .. } => {
             let name = &name.value;
             match distribution {
-                Distribution::Choice(words) => format!("{name} choice {}", words.join(" ")),
+                Distribution::Choice { values } => format!("{name} choice {}", values.join(" ")),
                 Distribution::Uniform { low, high } => format!("{name} uniform {low} {high}"),
                 Distribution::Normal { mean, deviation } => {
                     format!("{name} normal {mean} {deviation}")

@@ -54,9 +54,8 @@ pub(super) fn diagnose(
                 problem
             }
         };
-        let problem = entry.tests.label(problem, "needed here");
-        let problem = entry.fixtures.label(problem, "needed here");
-        findings.problems.push(entry.hooks.label(problem, "needed here"));
+        let sites = entry.sites.values();
+        findings.problems.push(sites.fold(problem, |it, sites| sites.label(it, "needed here")));
     }
 }
 
@@ -123,13 +122,8 @@ fn plugin_text(file: &Path) -> Option<SourceText> {
 /// Checks that a loadable file contains the kinds of plug-ins for which it is used.
 fn check_kinds(entry: &FileUse, report: &CheckReport, findings: &mut CheckFindings) {
     let Some(kinds) = &report.kinds else { return };
-    let uses = [
-        (PluginRole::Test, &entry.tests),
-        (PluginRole::Fixture, &entry.fixtures),
-        (PluginRole::Hook, &entry.hooks),
-    ];
-    for (role, sites) in uses {
-        if sites.is_empty() || kinds.iter().any(|kind| kind == role.kind()) {
+    for (role, sites) in &entry.sites {
+        if kinds.iter().any(|kind| kind == role.kind()) {
             continue;
         }
         if entry.optional {
@@ -142,7 +136,7 @@ fn check_kinds(entry: &FileUse, report: &CheckReport, findings: &mut CheckFindin
                 let message = format!("the plug-in `{file}` is a {other}, not a {expected}");
                 Diagnostic::error("wrong-kind", message).hint(role.advice())
             }
-            None => contains_none(&entry.file, role),
+            None => contains_none(&entry.file, *role),
         };
         findings.problems.push(sites.label(problem, "used here"));
     }
