@@ -152,7 +152,7 @@ fn other_frameworks_are_only_for_tests() {
       hint: write a program as `<command>`, without a `type`
     unknown-type: unknown type `gtset`
       4:13 gtset
-      note: known types are `dll`, `lua`, `python`, `ruby`, `gtest`, `catch2`, `doctest`, `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `ctest`, `rostest`, `cargo`, `go`, `tap`, `program`
+      note: known types are `dll`, `lua`, `python`, `ruby`, `gtest`, `catch2`, `doctest`, `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `launch_testing`, `ctest`, `rostest`, `cargo`, `go`, `tap`, `program`
       hint: did you mean `gtest`?
     ");
 }
@@ -190,7 +190,7 @@ fn only_programs_with_a_process_for_each_case_are_forked() {
     insta::assert_snapshot!(shown, @"
     not-of-this-type: `fork` is only for tests of other frameworks
       2:13 main
-      note: their types are `gtest`, `catch2`, `doctest`, `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `ctest`, `rostest`, `cargo`, `go`, `tap`, `program`
+      note: their types are `gtest`, `catch2`, `doctest`, `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `launch_testing`, `ctest`, `rostest`, `cargo`, `go`, `tap`, `program`
       hint: `rtf run --fork` chooses how processes of plug-ins start
     not-of-this-type: `fork` needs `isolation=\"case\"`
       3:26 main
@@ -218,15 +218,15 @@ fn attributes_of_other_types_are_errors() {
     insta::assert_snapshot!(shown, @"
     not-of-this-type: `cases` is only for tests of other frameworks
       2:14 *
-      note: their types are `gtest`, `catch2`, `doctest`, `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `ctest`, `rostest`, `cargo`, `go`, `tap`, `program`
+      note: their types are `gtest`, `catch2`, `doctest`, `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `launch_testing`, `ctest`, `rostest`, `cargo`, `go`, `tap`, `program`
       hint: `rtf run SUITE::TEST/CASE` selects a case of a plug-in
     not-of-this-type: `case-timeout` is only for tests of other frameworks
       2:31 1s
-      note: their types are `gtest`, `catch2`, `doctest`, `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `ctest`, `rostest`, `cargo`, `go`, `tap`, `program`
+      note: their types are `gtest`, `catch2`, `doctest`, `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `launch_testing`, `ctest`, `rostest`, `cargo`, `go`, `tap`, `program`
       hint: `timeout` limits the whole test
     not-of-this-type: `isolation=\"case\"` is only for tests of other frameworks
       2:46 case
-      note: their types are `gtest`, `catch2`, `doctest`, `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `ctest`, `rostest`, `cargo`, `go`, `tap`, `program`
+      note: their types are `gtest`, `catch2`, `doctest`, `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `launch_testing`, `ctest`, `rostest`, `cargo`, `go`, `tap`, `program`
       hint: each test already has a separate process
     not-of-this-type: a test of type `gtest` cannot share a process
       3:31 shared

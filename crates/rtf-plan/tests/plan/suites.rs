@@ -153,8 +153,8 @@ fn unknown_types_list_the_known_ones() {
     let known = "known types are `dll`, `lua`, `python`, `ruby`, `process`";
     assert_eq!(found(0), ("unknown-type", known, Some("did you mean `process`?")));
     let known = "known types are `dll`, `lua`, `python`, `ruby`, `gtest`, `catch2`, `doctest`, \
-                 `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `ctest`, `rostest`, \
-                 `cargo`, `go`, `tap`, `program`";
+                 `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `launch_testing`, \
+                 `ctest`, `rostest`, `cargo`, `go`, `tap`, `program`";
     assert_eq!(found(1), ("unknown-type", known, Some("did you mean `lua`?")));
 }
 

@@ -96,7 +96,7 @@ fn an_unknown_type() {
     2 |   <test type="lau">EncoderTest</test>
       |               ^^^
       |
-      = note: known types are `dll`, `lua`, `python`, `ruby`, `gtest`, `catch2`, `doctest`, `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `ctest`, `rostest`, `cargo`, `go`, `tap`, `program`
+      = note: known types are `dll`, `lua`, `python`, `ruby`, `gtest`, `catch2`, `doctest`, `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `launch_testing`, `ctest`, `rostest`, `cargo`, `go`, `tap`, `program`
       = help: did you mean `lua`?
 
     1 error; nothing was started
@@ -161,7 +161,7 @@ fn five_mistakes_are_five_messages() {
     4 |   <test type="rust">EncoderTest</test>
       |               ^^^^
       |
-      = note: known types are `dll`, `lua`, `python`, `ruby`, `gtest`, `catch2`, `doctest`, `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `ctest`, `rostest`, `cargo`, `go`, `tap`, `program`
+      = note: known types are `dll`, `lua`, `python`, `ruby`, `gtest`, `catch2`, `doctest`, `boost`, `cppunit`, `aunit`, `junit`, `pytest`, `unittest`, `launch_testing`, `ctest`, `rostest`, `cargo`, `go`, `tap`, `program`
 
     error: there is no plug-in `Missing.lua` of type `lua`
      --> arm.xml:5:9
