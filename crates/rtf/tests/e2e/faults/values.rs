@@ -19,9 +19,11 @@ def serve(connection):
             print("there is no field `none`", file=stream, flush=True)
             return
         FILE.write_text(request)
-        print("ok", file=stream, flush=True)
-        stream.read()
-        FILE.unlink()
+        try:  # the other side may be killed before it has read the answer
+            print("ok", file=stream, flush=True)
+            stream.read()
+        finally:
+            FILE.unlink()
 
 def accept(server):
     while True:
