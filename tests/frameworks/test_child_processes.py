@@ -278,7 +278,7 @@ def test_verdicts_are_those_without_rtf(
 
 
 def test_each_type_has_programs_with_child_processes() -> None:
-    # Tests of launch_testing are unittest's, with the same reporter; `launch_test` runs no single one.
+    # Tests of launch_testing are those of unittest, and `launch_test` cannot run one of them.
     assert sorted([*CORPORA, "launch_testing"]) == TYPES
 
 
