@@ -34,11 +34,6 @@ collect_ignore = [
     "predecessor/project",
 ]
 
-# Python's readline, which pytest imports, sets them for all processes; many print to that width.
-for size in ("COLUMNS", "LINES"):
-    os.environ.pop(size, None)
-    os.unsetenv(size)
-
 BUILDS = {
     "release": ["tools/build.sh"],
     "debug": ["cargo", "build", "--quiet", "--workspace", "--locked"],

@@ -14,6 +14,12 @@ BUILD = ROOT / "build"
 """The files that tests build, which later runs use again."""
 TARGET = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
 
+# Python's readline, which pytest imports, sets the size of a terminal for all processes, also for
+# those whose output is compared.
+for size in ("COLUMNS", "LINES"):
+    os.environ.pop(size, None)
+    os.unsetenv(size)
+
 STARTED_WITH = dict(os.environ)
 """The environment before a test has changed it."""
 

@@ -33,7 +33,7 @@ use rtf_run::{VerbResult, plan, reports, terminal};
 pub use array_task::{ArrayTask, last_attempt};
 pub use options::ClusterOptions;
 pub use stop::STOP_GRACE;
-pub use submission::{Submission, text};
+pub use submission::{Submission, utf8_text};
 
 /// The file with the exit code of an attempt.
 pub const EXIT_CODE: &str = "exit-code";

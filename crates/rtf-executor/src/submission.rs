@@ -67,14 +67,14 @@ impl Submission {
         let stored = Stored {
             name,
             args: run_arguments(std::env::args_os().skip(1))?,
-            working_dir: text(working_dir.into())?,
+            working_dir: utf8_text(working_dir.into())?,
             shards: options.shards,
             tasks,
             tests: plan.tests,
             resources: options.resources(plan),
             cluster: options.cluster,
         };
-        text(dir.clone().into())?;
+        utf8_text(dir.clone().into())?;
         let file = dir.join(STORED);
         let json = serde_json::to_vec_pretty(&stored).map_err(Failure::internal)?;
         let written = fs::create_dir_all(&dir).and_then(|()| replace(&file, &json));
@@ -135,11 +135,14 @@ fn run_arguments(args: impl Iterator<Item = OsString>) -> Result<Vec<String>, Fa
             break;
         }
     }
-    args.map(text).collect()
+    args.map(utf8_text).collect()
 }
 
-/// Other texts cannot be stored.
-pub fn text(text: OsString) -> Result<String, Failure> {
+/// A text as it can be stored.
+///
+/// # Errors
+/// It is not valid UTF-8.
+pub fn utf8_text(text: OsString) -> Result<String, Failure> {
     text.into_string().map_err(|text| {
         let error = format!("`{}` is not valid UTF-8", text.to_string_lossy());
         Failure::input(error).hint("`--executor` needs arguments and paths in UTF-8")

@@ -7,7 +7,7 @@ use clap::{ArgMatches, FromArgMatches};
 use rtf_cluster::Cluster;
 use rtf_cluster::kubernetes::Kubernetes;
 use rtf_cluster::slurm::Slurm;
-use rtf_executor::{ArrayTask, ClusterOptions, STOP_GRACE, Submission, text};
+use rtf_executor::{ArrayTask, ClusterOptions, STOP_GRACE, Submission, utf8_text};
 use rtf_plan::select::{Shard, ShardBy};
 use rtf_run::error::Failure;
 use rtf_run::history;
@@ -33,7 +33,7 @@ pub fn options(
 
 fn slurm(args: &ClusterArgs) -> Result<Slurm, Failure> {
     let program = std::env::current_exe().map_err(Failure::internal)?;
-    Ok(Slurm { program: text(program.into())?, options: args.args.clone() })
+    Ok(Slurm { program: utf8_text(program.into())?, options: args.args.clone() })
 }
 
 fn kubernetes(
@@ -55,7 +55,7 @@ fn kubernetes(
     Ok(Kubernetes {
         image,
         claim: kubernetes.claim,
-        mount: text(mount.into())?,
+        mount: utf8_text(mount.into())?,
         grace_secs: (shutdown_timeout + STOP_GRACE).as_secs(),
         patch: kubernetes.patch.map(|path| read(&path)).transpose()?,
         options: args.args.clone(),

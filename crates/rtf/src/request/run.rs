@@ -37,11 +37,11 @@ pub fn resolve(args: RunVerbArgs, matches: &ArgMatches) -> Result<RunVerbRequest
         None => (None, args, Cow::Borrowed(matches)),
     };
     config::fill_run(&mut args.run, &matches)?;
-    let ExecutorArgs { cluster: executor, array_task, .. } = args.executor.clone();
-    cluster::refuse_unused(&executor)?;
-    let is_local = executor.executor == Executor::Local || array_task.is_some();
+    let ExecutorArgs { cluster: cluster_args, array_task, .. } = args.executor.clone();
+    cluster::refuse_unused(&cluster_args)?;
+    let is_local = cluster_args.executor == Executor::Local || array_task.is_some();
     match &array_task {
-        Some(task) => cluster::fill_task(task, &mut args.run, executor.shards)?,
+        Some(task) => cluster::fill_task(task, &mut args.run, cluster_args.shards)?,
         None if is_local => {}
         None => cluster::fill_submission(&mut args)?,
     }
@@ -59,7 +59,7 @@ pub fn resolve(args: RunVerbArgs, matches: &ArgMatches) -> Result<RunVerbRequest
         return Ok(RunVerbRequest::Resumed(Box::new(submission), collect));
     }
     let results = &collect.output.results;
-    let options = cluster::options(&executor, results, shutdown_timeout)?;
+    let options = cluster::options(&cluster_args, results, shutdown_timeout)?;
     let tests = inputs::tests(&args.input)?;
     Ok(RunVerbRequest::Submission(Box::new(SubmissionRequest { options, tests, collect })))
 }
