@@ -242,12 +242,17 @@ def test_many_threads_number_their_cases_in_the_order_of_the_channel(tmp_path: P
 def test_concurrent_tasks_have_separate_cases(tmp_path: Path) -> None:
     body = (
         "import asyncio\n"
-        "async def one(name, first, second):\n"
-        "    with self.case(name):\n"
-        "        await asyncio.sleep(first)\n        self.report(name)\n"
-        "        await asyncio.sleep(second)\n"
+        "async def a(reported, ended):\n"
+        "    with self.case('a'):\n"
+        "        await reported.wait()\n        self.report('a')\n"
+        "    ended.set()\n"
+        "async def b(reported, ended):\n"
+        "    with self.case('b'):\n"
+        "        self.report('b')\n        reported.set()\n"
+        "        await ended.wait()\n"
         "async def both():\n"
-        "    await asyncio.gather(one('a', 0.02, 0.02), one('b', 0.01, 0.1))\n"
+        "    reported, ended = asyncio.Event(), asyncio.Event()\n"
+        "    await asyncio.gather(a(reported, ended), b(reported, ended))\n"
         "asyncio.run(both())"
     )
     assert events(run(tmp_path, arm(body))) == [
