@@ -1,4 +1,4 @@
-"""What varies between two episodes. Without MuJoCo, whose import takes long."""
+"""What varies between two episodes."""
 
 from __future__ import annotations
 

@@ -2,10 +2,11 @@
 //! they reach tests, hooks and fixtures, and how secrets are kept out of events.
 
 use std::borrow::Cow;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use rtf_model::protocol::{FixtureValue, Plugin};
-use rtf_model::{Episode, EventKind, FixtureProvided, value_text};
+use rtf_model::{Episode, EventKind, FixtureProvided, Parameter, value_text};
 use rtf_plan::plan::{FixtureBody, HookBody, HookPlan, HostPlan, SuitePlan};
 use rtf_plan::suite::{episode_reference, fixture_reference};
 use serde::{Deserialize, Serialize};
@@ -62,10 +63,13 @@ impl FixtureValues {
 
     pub fn begin_episode(&mut self, episode: Episode) {
         self.episode = Some(episode);
-        self.version += 1;
     }
 
-    /// A number that differs after each change.
+    pub fn has_episode(&self) -> bool {
+        self.episode.is_some()
+    }
+
+    /// A number that differs after each change of a value.
     pub fn version(&self) -> u64 {
         self.version
     }
@@ -95,10 +99,29 @@ impl FixtureValues {
         }
         let variables = self.values.iter();
         env.extend(variables.map(|value| (value.variable.clone(), value.text.clone())));
-        if let Some(episode) = &self.episode {
-            env.push((EPISODE_VARIABLE.to_owned(), episode.id.to_string()));
-            env.push((SEED_VARIABLE.to_owned(), episode.seed.to_string()));
-        }
+        env.extend(self.numbers_of_episode());
+    }
+
+    fn numbers_of_episode(&self) -> impl Iterator<Item = (String, String)> {
+        let numbers = |episode: &Episode| {
+            let (id, seed) = (episode.id.to_string(), episode.seed.to_string());
+            [(EPISODE_VARIABLE.to_owned(), id), (SEED_VARIABLE.to_owned(), seed)]
+        };
+        self.episode.iter().flat_map(numbers)
+    }
+
+    /// Returns the variables of an environment that differ between episodes: a host that runs
+    /// tests of several ones sets them before each. The last entry for a name counts.
+    pub fn variables_of_episode<'e>(
+        &self,
+        env: impl DoubleEndedIterator<Item = &'e (String, String)>,
+    ) -> Vec<Parameter> {
+        let mut known = HashSet::new();
+        let last = env.rev().filter(|(name, _)| known.insert(name));
+        let refers = last.filter(|(_, value)| episode_reference::mentions(value));
+        let expanded = refers.map(|(name, value)| (name.clone(), self.expand(value)));
+        let all = expanded.chain(self.numbers_of_episode());
+        all.map(|(name, value)| Parameter { name, value }).collect()
     }
 
     /// Adds the values to a request, and replaces references in it.

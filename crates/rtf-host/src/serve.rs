@@ -3,7 +3,7 @@
 use rtf_model::protocol::{
     Initialize, PROTOCOL_VERSION, Plugin, Request, RpcError, TestReportedParams, VERSION_MISMATCH,
 };
-use rtf_model::{Outcome, Phase};
+use rtf_model::{Outcome, Parameter, Phase};
 use rustix::process::Pid;
 
 use crate::decode::{INVALID_REQUEST, Incoming};
@@ -111,13 +111,13 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
             self.session.refuse(id, RpcError { code: INVALID_REQUEST, message });
             return false;
         }
-        let (mut last, mut end_marker) = (false, None);
+        let (mut last, mut end_marker, mut after_failure) = (false, None, false);
         let sets_up = matches!(request, Request::SetUpFixture(_));
         match request {
             Request::RunTest(plugin) => {
-                last = plugin.is_last;
+                (last, after_failure) = (plugin.is_last, plugin.continues_after_failure);
                 if plugin.end_marker.is_some() {
-                    self.begin_shared();
+                    self.begin_shared(&plugin.variables);
                 }
                 self.run_test(&plugin);
                 end_marker = plugin.end_marker;
@@ -147,9 +147,13 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
             answer.subscriptions = self.host.subscriptions();
         }
         if let (Some(marker), false) = (end_marker, last) {
-            let passed = answer.outcome == Outcome::Passed;
+            let may_continue = match answer.outcome {
+                Outcome::Passed => true,
+                Outcome::Failed | Outcome::Skipped => after_failure,
+                _ => false,
+            };
             answer.continues =
-                passed && self.shared.as_ref().is_some_and(|shared| shared.end_test(&marker));
+                may_continue && self.shared.as_ref().is_some_and(|shared| shared.end_test(&marker));
             last = !answer.continues;
         }
         self.session.answer(id, answer);
@@ -157,11 +161,12 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
     }
 
     /// From now on, everything that the host sends belongs to this test.
-    fn begin_shared(&mut self) {
+    fn begin_shared(&mut self, variables: &[Parameter]) {
         if self.shared.is_none() {
             // Without it, the host ends after the test.
             self.shared = SharedHost::begin().ok();
         }
+        variables.iter().for_each(|variable| unix::set_variable(&variable.name, &variable.value));
         self.session.phase(Phase::Load);
     }
 

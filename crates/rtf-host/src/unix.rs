@@ -62,6 +62,13 @@ pub(crate) fn remove_variable(name: &str) {
     unsafe { std::env::remove_var(name) }
 }
 
+/// Sets a variable before a plug-in is loaded.
+pub(crate) fn set_variable(name: &str, value: &str) {
+    // SAFETY: the other thread, which reads the channel, does not use the environment. Threads
+    // that an earlier plug-in of a shared host has left may: its author has chosen to share.
+    unsafe { std::env::set_var(name, value) }
+}
+
 /// Undoes what Rust's start-up does to `SIGPIPE`: the plug-in and the programs
 /// that it starts expect the signal as the shell would leave it.
 pub(crate) fn restore_sigpipe() {

@@ -180,6 +180,13 @@ pub struct Plugin {
     /// to both output streams at the end of this test.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub end_marker: Option<String>,
+    /// For such a host: whether it also serves further tests after this one has failed or skipped
+    /// itself.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub continues_after_failure: bool,
+    /// For such a host: environment variables that it sets before it loads the plug-in.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub variables: Vec<Parameter>,
     /// The directory for a test's attachments. The host creates it when it is needed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attachments_dir: Option<String>,

@@ -24,8 +24,10 @@ class Task:
         self.attachments_dir = _text_of(params, "attachments_dir", "")
         # Ends the test's output in a host that continues with the next test.
         self.end_marker = _text_of(params, "end_marker", "")
-        parameters = _objects_of(params, "parameters")
-        self.parameters = {_text_of(one, "name"): _text_of(one, "value") for one in parameters}
+        self.continues_after_failure = params.get("continues_after_failure", False) is True
+        # Of the environment, for the same reason.
+        self.variables = _texts_of(params, "variables")
+        self.parameters = _texts_of(params, "parameters")
         values = _objects_of(params, "fixture_values")
         self.fixture_values = {_text_of(one, "name"): _value_of(one, "value") for one in values}
         self.selectors = [Selector(one) for one in _objects_of(params, "cases")]
@@ -60,6 +62,10 @@ def _objects_of(params: dict[str, object], name: str) -> list[dict[str, object]]
     if not isinstance(value, list) or not all(isinstance(one, dict) for one in value):
         raise TypeError(f"`{name}` is not a list of objects")
     return value
+
+
+def _texts_of(params: dict[str, object], name: str) -> dict[str, str]:
+    return {_text_of(one, "name"): _text_of(one, "value") for one in _objects_of(params, name)}
 
 
 def _value_of(params: dict[str, object], name: str) -> object:

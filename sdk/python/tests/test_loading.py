@@ -96,6 +96,21 @@ def test_a_shared_host_forgets_the_plugins_that_it_has_run(tmp_path: Path) -> No
     host.channel.close()
 
 
+def test_a_shared_host_continues_after_a_failure_with_the_variables_of_each_test(
+    tmp_path: Path,
+) -> None:
+    host = Host(tmp_path)
+    body = arm("import os\nself.report(os.environ['RTF_EPISODE'])\nself.fail('stuck')")
+    shared = {"is_last": False, "end_marker": "\0mark\n", "continues_after_failure": True}
+    for episode in ("1", "2"):
+        variables = [{"name": "RTF_EPISODE", "value": episode}]
+        params = {**plugin(tmp_path, body), **shared, "variables": variables}
+        answer = host.ask("run-test", params)
+        assert answer["result"] == {"outcome": "failed", "continues": True}
+    assert [text for kind, text in host.texts() if kind == "report"] == ["1", "2"]
+    host.channel.close()
+
+
 def test_output_comes_out_before_the_answer(tmp_path: Path) -> None:
     ran = run(tmp_path, arm("import sys\nprint('a')\nsys.stdout.write('b')"))
     assert ran.output == "a\nb"

@@ -31,6 +31,17 @@ class SharingTest < HostTest
     assert_equal [true, ""], [status.success?, output]
   end
 
+  def test_in_a_campaign_it_stays_after_a_failure_and_sets_the_variables_of_each_test
+    host = self.host
+    body = arm("report(ENV.fetch(\"RTF_EPISODE\")); fail(\"no\")")
+    %w[1 2].each do |episode|
+      variables = [{ name: "RTF_EPISODE", value: episode }]
+      answer = ask(host, 2, body, continues_after_failure: true, variables: variables)
+      assert_equal({ "outcome" => "failed", "continues" => true }, answer)
+    end
+    assert_equal %w[1 2], host.texts.map(&:last) - ["no"]
+  end
+
   def test_a_request_that_crosses_the_last_answer_does_not_change_the_exit_code
     host = self.host
     assert_equal "failed", ask(host, 2, arm("at_exit { sleep(0.5) }; fail(\"no\")"))["outcome"]

@@ -259,8 +259,10 @@ class Host:
         if self._shared is None and not task.last:
             self._shared = shared_host.SharedHost.begin()
         session.announce("load")
+        os.environ.update(task.variables)
         answer = steps.run_test(session)
-        continues = answer["outcome"] == "passed" and not task.last
+        outcomes = ("passed", "failed", "skipped") if task.continues_after_failure else ("passed",)
+        continues = answer["outcome"] in outcomes and not task.last
         if continues and self._shared is not None and self._shared.end_test(task.end_marker):
             return {**answer, "continues": True}, False
         return answer, True

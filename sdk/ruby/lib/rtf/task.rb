@@ -17,8 +17,8 @@ module RTF
       end
     end
 
-    attr_reader :file, :name, :param, :environment, :args, :repetition, :end_marker, :parameters,
-                :fixture_values
+    attr_reader :file, :name, :param, :environment, :args, :repetition, :end_marker, :variables,
+                :parameters, :fixture_values
 
     # The directory for copies of attached files.
     attr_accessor :attachments_dir
@@ -34,6 +34,7 @@ module RTF
       @repetition = params.fetch("repetition", 0)
       @last = params["is_last"] == true
       @end_marker = text(params, "end_marker", "")
+      @continues_after_failure = params["continues_after_failure"] == true
       strings = @args.is_a?(Array) && @args.all?(String)
       raise TypeError, "`args` is not a list of texts" unless strings
       raise TypeError, "`repetition` is not a whole number" unless @repetition.is_a?(Integer)
@@ -46,6 +47,11 @@ module RTF
       @last
     end
 
+    # Whether a shared host continues after a test with this outcome.
+    def continues_after?(outcome)
+      outcome == "passed" || (@continues_after_failure && %w[failed skipped].include?(outcome))
+    end
+
     # Whether the case with this path runs.
     def select?(path)
       @selectors.empty? || @selectors.any? { |selector| selector.select?(path) }
@@ -53,10 +59,10 @@ module RTF
 
     private
 
-    # Reads the values of a matrix and of fixtures.
+    # Reads the variables of a shared host, and the values of a matrix and of fixtures.
     def read_values(params)
-      @parameters = objects(params, "parameters").to_h do |one|
-        [text(one, "name"), text(one, "value")]
+      @variables, @parameters = %w[variables parameters].map do |name|
+        objects(params, name).to_h { |one| [text(one, "name"), text(one, "value")] }
       end
       @fixture_values = objects(params, "fixture_values").to_h do |one|
         raise TypeError, "`value` is missing or null" if one["value"].nil?

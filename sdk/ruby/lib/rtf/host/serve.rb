@@ -109,8 +109,10 @@ module RTF
         require "rtf/host/shared_host"
         @shared ||= SharedHost.begin unless task.last?
         session.announce("load")
+        ENV.update(task.variables)
         answer = Steps.run_test(session)
-        continues = session.request.passed? && !task.last? && @shared&.end_test(task.end_marker)
+        continues = task.continues_after?(answer[:outcome]) && !task.last? &&
+                    @shared&.end_test(task.end_marker)
         continues ? [answer.merge(continues: true), false] : [answer, true]
       end
 

@@ -74,6 +74,7 @@ impl SuiteMachine<'_> {
         let next = episodes.left.next().cloned().or_else(|| episodes.arrived.pop_front());
         let Some(episode) = next else { return };
         (self.episodes.running, self.episodes.is_ending) = (Some(episode.id), false);
+        self.scheduler.shared_host.serves_episodes = self.episodes.any_left();
         cx.begin_episode(episode.clone());
         let suite = self.plan.id;
         cx.emit(EventKind::EpisodeStarted(EpisodeStarted { suite, episode }));

@@ -5,7 +5,8 @@
 //! for the other after each short test. If the runner has to check something between two
 //! tests (fixtures or, in a soak, resource usage), or if the verdict of a test decides what
 //! follows (a hook, another attempt, the end of the suite), the host is assigned the next
-//! test after the present one has ended.
+//! test after the present one has ended. So it is between two episodes of a campaign, whose
+//! variables the host sets before it loads the plug-in.
 
 use rtf_model::{Diagnostic, EventKind, ExitStatus, TestId};
 
@@ -48,7 +49,9 @@ impl<'p> Scheduler<'p> {
         plan: &'p TestPlan,
         number: AttemptNumber,
     ) -> TestRequest<'static> {
-        let is_last = self.successor(plan, number).is_none();
+        let shares = plan.settings.shared && self.suite.settings.parallel == 1;
+        let is_last =
+            self.successor(plan, number).is_none() && !(shares && self.shared_host.serves_episodes);
         TestRequest { repetition: number.repetition, is_last, carried: None }
     }
 

@@ -11,6 +11,8 @@ use rtf_plan::plan::{SuitePlan, TestPlan};
 pub(super) struct SharedHost<'p> {
     /// Whether a test may be assigned while another one runs.
     pub assigns_ahead: bool,
+    /// Whether it gets tests of a further episode.
+    pub serves_episodes: bool,
     /// The tests that were assigned ahead, in order, and the host's id from the begin of each.
     pub assigned: VecDeque<(HostId, &'p TestPlan, AttemptNumber)>,
     /// The host has begun the assigned test, which is being started.
@@ -25,6 +27,13 @@ impl SharedHost<'_> {
     pub(super) fn new(suite: &SuitePlan) -> Self {
         let assigns_ahead = suite.fixtures.is_empty() && suite.hooks.is_empty() && !suite.repeats();
         let assigned = VecDeque::new();
-        Self { assigns_ahead, assigned, begun: None, idle: None, killed: None }
+        Self {
+            assigns_ahead,
+            serves_episodes: false,
+            assigned,
+            begun: None,
+            idle: None,
+            killed: None,
+        }
     }
 }

@@ -144,6 +144,11 @@ fn plugin_of(
         fork_at_main: programs.is_some_and(|programs| programs.fork_at_main),
         ..plugin(suite, &plan.name, &plan.plugin, request.repetition)
     };
+    if plan.settings.shared && values.has_episode() {
+        let env = suite.env.iter().chain(&plan.env).chain(&plan.plugin.host.env);
+        plugin.variables = values.variables_of_episode(env);
+        plugin.continues_after_failure = true;
+    }
     values.extend_request(&mut plugin);
     plugin
 }

@@ -6,10 +6,12 @@ use rtf_model::{Episode, EpisodeOutcome, EventKind, ExitStatus, Parameter, Phase
 
 use rtf_model::protocol::Reply;
 
+use super::shared::continue_after;
 use super::world::{FIXTURE, SECOND, TEST, World, suite};
 use crate::hook::RUN_REQUEST;
 use crate::run::machine::{Deadline, HostId, Input, ProcessEvent, StopLevel};
 use rtf_plan::plan::{HookBody, ResetPlan, SuitePlan};
+use rtf_process::codec::INITIALIZE;
 
 const SECOND_TEST: Source = Source::Test(TestId(1));
 
@@ -286,6 +288,32 @@ fn tests_get_the_parameters_of_their_episode() {
     let request = serde_json::to_string(&world.sent.last().unwrap().2).unwrap();
     assert!(request.contains("--mass 1.5"), "{request}");
     assert!(request.contains(r#"{"name":"mass","value":"1.5"}"#), "{request}");
+}
+
+/// Also after it has failed: the host sets the variables of each episode.
+#[test]
+fn tests_of_several_episodes_share_a_host() {
+    let mut plan = plan(3);
+    plan.fixtures.clear();
+    plan.tests.truncate(1);
+    plan.tests[0].settings.shared = true;
+    plan.tests[0].env = vec![("RTF_PARAM_MASS".to_owned(), "${episode:mass}".to_owned())];
+    let mut world = started(&plan);
+    let initialized = serde_json::json!({ "protocol": 1, "host": "h", "supports_shared": true });
+    world.input(TEST, ProcessEvent::Replied(INITIALIZE, Reply::Result(initialized)));
+    for _ in 0..2 {
+        let host = continue_after(&mut world, 0, Some("stuck"));
+        world.release(host);
+        assert!(world.begin_assigned(host), "the host gets the next episode");
+    }
+    world.pass(0);
+    world.finish();
+    let joined = world.joined.iter();
+    let joined: Vec<_> = joined.map(|it| (it.variables[0].value.as_str(), it.is_last)).collect();
+    assert_eq!(joined, [("2.5", false), ("3.5", true)]);
+    assert!(world.joined.iter().all(|plugin| plugin.continues_after_failure));
+    let (failed, passed) = (Some(EpisodeOutcome::Failed), Some(EpisodeOutcome::Passed));
+    assert_eq!(outcomes(&world), [(1, failed), (2, failed), (3, passed)]);
 }
 
 /// The limit passes before a test has started, so that no test has a problem.

@@ -64,13 +64,21 @@ fn initialized(world: &mut World<'_>, test: u32) {
 
 /// A test passes, and its host stays alive.
 pub(super) fn answer_and_continue(world: &mut World<'_>, test: u32) -> HostId {
+    continue_after(world, test, None)
+}
+
+/// A test passes or has a failure, and its host stays alive.
+pub(super) fn continue_after(world: &mut World<'_>, test: u32, failure: Option<&str>) -> HostId {
     for phase in [Phase::Setup, Phase::Run, Phase::TearDown] {
         world.phase(source(test), phase);
+        let text = failure.filter(|_| phase == Phase::Run);
+        text.into_iter().for_each(|text| world.failure(source(test), text, false));
     }
     let host = world.host_of(source(test));
     let asked = world.sent.iter().rev().find(|(to, id, _)| *to == host && id.is_some());
     let id = asked.and_then(|(_, id, _)| *id).expect("a request");
-    let value = serde_json::json!({ "outcome": "passed", "continues": true });
+    let outcome = if failure.is_some() { "failed" } else { "passed" };
+    let value = serde_json::json!({ "outcome": outcome, "continues": true });
     world.input(source(test), ProcessEvent::Replied(id, Reply::Result(value)));
     host
 }

@@ -7,7 +7,7 @@ mod plans;
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
-use rtf_model::protocol::{Reply, Request};
+use rtf_model::protocol::{Plugin, Reply, Request};
 use rtf_model::{
     Event, EventKind, ExitStatus, FixturePlanned, HookPlanned, Micros, OrderChecker, Record,
     RunStarted, Source, SuitePlanned, TestId, TestPlanned,
@@ -45,6 +45,8 @@ pub struct World<'p> {
     pub answered: BTreeSet<HostId>,
     /// The tests that shared hosts were assigned.
     pub assigned: BTreeMap<HostId, (HostId, Source, u64)>,
+    /// What they were assigned, in order.
+    pub joined: Vec<Plugin>,
     /// Whether examinations of fixtures get no answer.
     pub hides_liveness: bool,
     /// The probes of each examination.
@@ -81,6 +83,7 @@ impl<'p> World<'p> {
             idle: BTreeSet::new(),
             answered: BTreeSet::new(),
             assigned: BTreeMap::new(),
+            joined: Vec::new(),
             hides_liveness: false,
             probes: Vec::new(),
             dump_waits: Vec::new(),
@@ -174,10 +177,11 @@ impl<'p> World<'p> {
                 }
                 Effect::Emit(kind) => self.emit(kind),
                 Effect::Spawn { host, source, .. } => drop(self.hosts.insert(host, source)),
-                Effect::Join { host, on, source, request, .. } => {
+                Effect::Join { host, on, source, request, plugin } => {
                     let is_assigned = self.assigned.values().any(|(id, ..)| *id == on);
                     assert!(is_assigned || self.hosts.contains_key(&on) || self.idle.contains(&on));
                     assert!(self.assigned.insert(on, (host, source, request)).is_none());
+                    self.joined.push(*plugin);
                 }
                 Effect::Send(host, id, request) => {
                     if let (true, Some(id), Request::CheckFixture {}) = (ends, id, &*request) {
