@@ -12,6 +12,16 @@
 
 tools/bootstrap.sh test
 checkers=$(tools/venv.sh test)
+
+# A compiler's cache with what other checkouts have compiled: dependencies, and files that have not changed. Its
+# server ends with the tests.
+sccache=$(tools/venv.sh sccache)/sccache
+server=$(mktemp -d)
+export RUSTC_WRAPPER=$sccache CMAKE_C_COMPILER_LAUNCHER=$sccache CMAKE_CXX_COMPILER_LAUNCHER=$sccache
+export SCCACHE_DIR=$CACHE/sccache SCCACHE_CACHE_SIZE=5G SCCACHE_IDLE_TIMEOUT=3600 SCCACHE_SERVER_UDS=$server/socket
+trap '"$sccache" --stop-server >/dev/null 2>&1 || true; rm -rf "$server"' EXIT
+"$sccache" --start-server >/dev/null 2>&1
+
 options=()
 if [ "${1:-}" = quick ]; then
   shift
@@ -24,6 +34,6 @@ for argument in "$@"; do
     tests | tests/* | */tests/*) where='' ;;
   esac
 done
-# More checks than processors, because many wait. A group is for what must not run twice at a time.
-[ -z "$where" ] || options+=(-n "$((JOBS + 1))" --dist loadgroup --no-loadscope-reorder)
-exec "$checkers/pytest" "${options[@]}" "$@" ${where:+"$where"}
+# More checks than processors, because most wait. A group is for what must not run twice at a time.
+[ -z "$where" ] || options+=(-n "$((2 * JOBS))" --dist loadgroup --no-loadscope-reorder)
+"$checkers/pytest" "${options[@]}" "$@" ${where:+"$where"}
