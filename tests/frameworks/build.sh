@@ -26,7 +26,7 @@ setting() {
 }
 
 # Compiles each C++ program of the corpus that is older than its sources or the SDK's headers:
-# NAME.cpp to NAME, and the libraries that rtf loads into them. Arguments are for the compiler.
+# NAME.cpp to NAME, and the libraries that rtf loads into them. Arguments are for the compiler and the linker.
 cpp_programs() {
   local file program headers=sdk/cpp/include
   quietly tools/preload.sh
@@ -36,7 +36,8 @@ cpp_programs() {
     if [ "$file" -nt "$program" ] || [ "$source/build.sh" -nt "$program" ] ||
       [ tests/frameworks/descendants/descendants.hpp -nt "$program" ] ||
       [ -n "$(find $headers/rtf -newer "$program")" ]; then
-      quietly c++ -std=c++17 -g -O0 -Wall -I$headers -o "$program" "$file" "$@"
+      quietly "${CMAKE_CXX_COMPILER_LAUNCHER:-env}" c++ -std=c++17 -g -O0 -Wall -I$headers -c -o "$program.o" "$file" "$@"
+      quietly c++ -g -o "$program" "$program.o" "$@"
     fi
   done
 }
