@@ -201,7 +201,8 @@ fn a_test_of_generation_1_needs_one_header_and_may_be_prepared_before_its_class(
         "#,
     );
     let ran = run_test(&library, json!({"param": "--well", "args": ["--well"]}));
-    let expected = ["report: arm test", "report: it has the plug-in's name", "report: torn down"];
+    // A check that holds was a report.
+    let expected = ["report: arm test", "check: it has the plug-in's name", "report: torn down"];
     assert_eq!(ran.texts(), expected);
     assert_eq!(ran.result["outcome"], "passed", "{ran:?}");
     let ran = run_test(&library, json!({"param": "--ill", "args": ["--ill"]}));

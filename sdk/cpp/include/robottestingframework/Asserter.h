@@ -81,7 +81,7 @@ public:
     static void testCheck(bool condition, TestMessage msg, TestCase *testcase)
     {
         if (condition) {
-            report(msg, testcase);
+            report(internal::as_check(msg), testcase);
         } else {
             testFail(condition, msg, testcase);
         }

@@ -80,7 +80,7 @@
         !(condition), ROBOTTESTINGFRAMEWORK_INTERNAL_SAID("is true: " #condition, message),        \
         ROBOTTESTINGFRAMEWORK_INTERNAL_TEST))
 
-// A failure when the condition is false, else a report; the test continues.
+// A failure when the condition is false, else a check; the test continues.
 #define ROBOTTESTINGFRAMEWORK_TEST_CHECK(condition, message)                                       \
     (::robottestingframework::Asserter::testCheck(                                                 \
         (condition), ROBOTTESTINGFRAMEWORK_INTERNAL_SAID("checks", message),                       \

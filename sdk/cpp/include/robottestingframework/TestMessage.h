@@ -14,6 +14,8 @@ class TestMessage;
 
 namespace internal {
 TestMessage said(const std::string &how, const std::string &text, const char *file, int line);
+TestMessage as_check(const TestMessage &message);
+bool is_check(const TestMessage &message);
 std::string text_of(const TestMessage &message);
 } // namespace internal
 
@@ -50,6 +52,8 @@ public:
 
 private:
     friend TestMessage internal::said(const std::string &, const std::string &, const char *, int);
+    friend TestMessage internal::as_check(const TestMessage &);
+    friend bool internal::is_check(const TestMessage &);
     friend std::string internal::text_of(const TestMessage &);
 
     unsigned int line_ = 0;
@@ -58,6 +62,8 @@ private:
     std::string detail_;
     // Whether the message is a macro's text, and the detail the user's.
     bool is_macro_ = false;
+    // Whether a report is about a check that holds.
+    bool is_check_ = false;
 };
 
 namespace internal {
@@ -68,6 +74,18 @@ inline TestMessage said(const std::string &how, const std::string &text, const c
     TestMessage message(how, text, file, static_cast<unsigned int>(line));
     message.is_macro_ = true;
     return message;
+}
+
+inline TestMessage as_check(const TestMessage &message)
+{
+    TestMessage check(message);
+    check.is_check_ = true;
+    return check;
+}
+
+inline bool is_check(const TestMessage &message)
+{
+    return message.is_check_;
 }
 
 // The message as one line.

@@ -48,7 +48,7 @@ public:
 
     void addReport(const Test *, TestMessage msg) override
     {
-        send_to_host(host_, RTF_MESSAGE_REPORT, msg);
+        send_to_host(host_, is_check(msg) ? RTF_MESSAGE_CHECK : RTF_MESSAGE_REPORT, msg);
     }
     void addError(const Test *, TestMessage msg) override
     {

@@ -88,18 +88,27 @@ private:
 
     void tell(JsonFields &event)
     {
+        const std::string kind = event["message.kind"];
         const std::string line = event["message.location.line"];
         const TestMessage message =
-            said(event["message.kind"], event["message.text"],
-                 event["message.location.file"].c_str(), line.empty() ? 0 : std::stoi(line));
-        const std::string kind = event["message.kind"];
+            said(verb(kind), event["message.text"], event["message.location.file"].c_str(),
+                 line.empty() ? 0 : std::stoi(line));
         if (kind == "failure") {
             getResult()->addFailure(this, message);
         } else if (kind == "error") {
             getResult()->addError(this, message);
         } else {
-            getResult()->addReport(this, message);
+            getResult()->addReport(this, kind == "check" ? as_check(message) : message);
         }
+    }
+
+    // The words of the macros.
+    static std::string verb(const std::string &kind)
+    {
+        if (kind == "report") {
+            return "reports";
+        }
+        return kind == "check" || kind == "failure" ? "checks" : kind;
     }
 
     // Reports an end of the test that has no message.
