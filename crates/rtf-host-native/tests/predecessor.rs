@@ -288,6 +288,10 @@ fn what_is_prepared_behind_its_class_may_live_in_a_namespace() {
         "#,
     );
     let ran = run_test(&library, json!({}));
-    assert_eq!(ran.texts(), ["report: own name"]);
+    assert_eq!(ran.texts(), ["report: test name: own name", "report: own name"]);
+    for derived in ["own name", "own name#2", "own name[joint=1]"] {
+        let ran = run_test(&library, json!({"name": derived}));
+        assert_eq!(ran.texts(), ["report: own name"], "{derived}");
+    }
     assert_eq!(ran.result["outcome"], "passed");
 }

@@ -100,9 +100,13 @@ package body RobotTestingFramework.Entry_Point is
    end Destroy;
 
    function Do_Setup return Boolean is
-     (if TestCase.Current /= null
-      then TestCase.Current.Setup (Session.Parameters)
-      else FixtureManager.Current.Setup (Session.Parameters));
+   begin
+      if TestCase.Current = null then
+         return FixtureManager.Current.Setup (Session.Parameters);
+      end if;
+      TestCase.Report_Name;
+      return TestCase.Current.Setup (Session.Parameters);
+   end Do_Setup;
    function Guarded_Setup is new Guarded (Do_Setup);
 
    function Set_Up

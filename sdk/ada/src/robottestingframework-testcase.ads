@@ -41,11 +41,18 @@ package RobotTestingFramework.TestCase is
       Registered : constant Boolean := Registry.Register (Make'Access);
    end Register;
 
-   --  Makes this the plug-in's test. Its name in the suite does not change.
-   procedure SetTest (Test : TestCase_Access; Name : String := "Unknown");
+   --  The name of a test that has none.
+   Unknown : constant String := "Unknown";
+
+   --  Makes this the plug-in's test. Its name in the suite does not change; another name is
+   --  reported before Setup.
+   procedure SetTest (Test : TestCase_Access; Name : String := Unknown);
 
    --  Reports the test's own name.
    procedure SetName (Name : String);
+
+   --  Reports the name that SetTest gave the test.
+   procedure Report_Name;
 
    --  The plug-in's test, if it is one.
    function Current return TestCase_Access;

@@ -169,11 +169,13 @@ impl Host {
     }
 }
 
-/// Starts a host with one test.
+/// Starts a host with one test, which is named `arm test` unless `params` has another name.
 pub fn start_test(library: &Path, mut params: Value) -> Host {
     let mut host = Host::start();
     params["file"] = json!(library);
-    params["name"] = json!("arm test");
+    if params["name"].is_null() {
+        params["name"] = json!("arm test");
+    }
     params["is_last"] = json!(true);
     host.send(json!({"id": 1, "method": "run-test", "params": params}));
     host

@@ -30,6 +30,7 @@ fn a_test_of_the_predecessor() {
     assert_eq!(folder.rtf(&["run", "s.xml"]).code, Some(1));
     let record = folder.journal().record;
     let expected = [
+        "Report: test name: AdaTest",
         "Report: test name: MyTest",
         "Report: setup: --rate 100",
         "Check: checked 100% %s",
@@ -47,7 +48,7 @@ fn a_test_of_the_predecessor() {
     });
     let lines = ["15", "28", "29", "31", "34"].map(|line| format!("predecessor.adb:{line}"));
     let places: Vec<_> = places.collect();
-    assert_eq!([&places[1..4], &places[4..6]].concat(), lines);
+    assert_eq!([&places[2..5], &places[5..7]].concat(), lines);
 }
 
 /// Each library has copies of the SDK's types. One process checks several libraries, and runs tests

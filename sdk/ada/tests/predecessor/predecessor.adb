@@ -5,7 +5,7 @@ package body Predecessor is
 
    procedure Create is
    begin
-      SetTest (new MyTest, "MyTest");
+      SetTest (new MyTest, "AdaTest");
    end Create;
 
    overriding function Setup (Self : in out MyTest; Parameters : String) return Boolean is

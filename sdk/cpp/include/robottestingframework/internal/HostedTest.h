@@ -70,8 +70,11 @@ public:
         if (own_.interrupt) {
             watch_.start(host_, *test_);
         }
-        name_ = test_->getName();
-        first_ = name_;
+        const std::string own = test_->getName();
+        const std::string name = from_text(host_.name(host_.context));
+        name_ = is_derived(name, own) ? own : name;
+        report_name();
+        first_ = own;
         first_.push_back('\0');
         arguments_.assign(argv, argv + argc + 1);
         arguments_[0] = &first_[0];
@@ -104,7 +107,15 @@ public:
     }
 
 private:
-    // Reports use the test's name in the suite.
+    // Whether a name in a suite says no more than the test's own: `Arm`, `Arm#2`, `Arm[joint=3]`.
+    static bool is_derived(const std::string &name, const std::string &own)
+    {
+        const bool starts_with_own = name.compare(0, own.size(), own) == 0;
+        return starts_with_own &&
+               (name.size() == own.size() || name[own.size()] == '#' || name[own.size()] == '[');
+    }
+
+    // Reports the test's own name: all others use its name in the suite.
     void report_name()
     {
         const std::string name = test_->getName();
