@@ -70,6 +70,7 @@ FILES = {
     "suites/more/leg.xml": suite("leg", test("Good.lua")),
     "suites/robot.xml": "<robot/>",
     "green.xml": suite("green", test("Good.lua") + test("Good.lua")),
+    "named.xml": suite("named", test("Named.lua") + test("Named.lua")),
     "red.xml": suite("red", "".join(map(test, ("Errs.lua", "Fails.lua", "Good.lua")))),
     "missing.xml": suite("missing", test("Good.lua") + test("Gone.lua")),
     "none.xml": suite("none", ""),
@@ -119,6 +120,13 @@ GREEN = "0 | cases 1 = 1 + 0"
 RED = "1 | cases 1 = 0 + 1"
 RED_SUITE = "1 | suites 1 = 0 + 1, cases 3 = 1 + 2"
 RED_TESTS = f"Errs failed: [ERROR] no bus, Fails failed: [FAIL] too fast, Good {GOOD_PASSED}"
+RED_JUNIT = (
+    "red.Errs.lua error: [ERROR] (Errs.lua) no bus, "
+    "red.Fails.lua failure: [FAIL] (Fails.lua) too fast, "
+    "red.Good.lua passed: "
+    "[INFO] (Good.lua) /; [INFO] (Good.lua) closed; [INFO] (Good.lua) torn down"
+)
+OTHER = "Other passed: [INFO] (Other) on"
 ARM = f"Good passed: [INFO] --n 3/--robot sim; {SAID}, Two {BAD}, arm failed"
 PARAMS = ["--a \"b c\" 'd e' C:\\f <", '--a "b c" d"e f"g']
 REFUSED_BY_US = "1 | no counts | no file"
@@ -176,13 +184,23 @@ CASES = [
     Case(["-s", "red.xml", "-o", "x"], f"{RED_SUITE} | {RED_TESTS}, red failed", result="x"),
     Case(
         ["-s", "red.xml", "--output-type", "junit"],
-        f"{RED_SUITE} | Errs error, Fails failure, Good passed",
+        f"{RED_SUITE} | {RED_JUNIT}",
         result="result.xml",
     ),
     Case(
         ["-s", "red.xml", "--output-type", "junit", "--output", "x"],
-        f"{RED_SUITE} | Errs error, Fails failure, Good passed",
+        f"{RED_SUITE} | {RED_JUNIT}",
         result="x",
+    ),
+    Case(
+        ["-t", "Named.lua", "--output-type", "junit"],
+        f"{GREEN} | default.{OTHER}",
+        result="result.xml",
+    ),
+    Case(
+        ["-s", "named.xml", "--output-type", "junit"],
+        f"0 | suites 1 = 1 + 0, cases 2 = 2 + 0 | named.{OTHER}, named.{OTHER}",
+        result="result.xml",
     ),
     Case(
         ["-s", "comments.xml"],

@@ -153,11 +153,19 @@ def text(content: str) -> list[str]:
 
 
 def junit(content: str) -> list[str]:
-    """`Good passed`, `Bad failure`, `Broken error`."""
-    cases = ElementTree.fromstring(content).iter("testcase")
-    kinds = ("failure", "error")
-    found = ((case, [kind for kind in kinds if case.find(kind) is not None]) for case in cases)
-    return [f"{plain(case.get('name', ''))} {''.join(kind) or 'passed'}" for case, kind in found]
+    """`arm.Bad.lua failure: [FAIL] (Bad.lua) too fast`: class name, result and output."""
+    found = []
+    for suite in ElementTree.fromstring(content).iter("testsuite"):
+        for case in suite.iter("testcase"):
+            assert case.get("classname") == f"{suite.get('name')}.{case.get('name')}"
+            kinds = [kind for kind in ("failure", "error") if case.find(kind) is not None]
+            result = f"{case.get('classname')} {''.join(kinds) or 'passed'}"
+            lines = (case.findtext("system-out") or "").splitlines()
+            said = [re.fullmatch(r"(\[\w+\]) +(\([^)]*\)) (.*)", line) for line in lines]
+            words = [f"{it[1]} {it[2]} {VERBS.sub('', it[3])}" for it in said if it]
+            assert len(words) == len(lines), lines
+            found.append(": ".join([result, "; ".join(words)] if words else [result]))
+    return found
 
 
 def plain(name: str) -> str:

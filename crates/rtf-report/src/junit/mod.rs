@@ -14,9 +14,12 @@ mod time;
 use std::io::{self, Write};
 use std::path::Path;
 
-use quick_junit::{Report, TestCase, TestCaseStatus, TestSuite};
-use rtf_model::{LeakedProcess, Record, SuiteRecord};
+pub(crate) use test::attachments;
 
+use quick_junit::{Report, TestCase, TestCaseStatus, TestSuite};
+use rtf_model::{LeakedProcess, Record, SuiteRecord, TestRecord};
+
+use crate::cases::TestCases;
 use crate::growth::{self, Within};
 use crate::{escape, explain, words};
 
@@ -26,17 +29,46 @@ use crate::{escape, explain, words};
 /// # Errors
 /// `out` cannot be written.
 pub fn write(out: &mut dyn Write, record: &Record, folder: Option<&Path>) -> io::Result<()> {
+    write_with(out, record, folder, &AsPlanned)
+}
+
+/// As [`write`], with the names and the output of another runner.
+///
+/// # Errors
+/// As for [`write`].
+pub(crate) fn write_with(
+    out: &mut dyn Write,
+    record: &Record,
+    folder: Option<&Path>,
+    style: &dyn Style,
+) -> io::Result<()> {
     // In memory first: an error of `out` (a closed pipe) then stays what it is.
-    let xml = report(record, folder).to_string().map_err(io::Error::other)?;
+    let xml = report(record, folder, style).to_string().map_err(io::Error::other)?;
     out.write_all(xml.as_bytes())
 }
 
-fn report(record: &Record, folder: Option<&Path>) -> Report {
+/// Names and output by which a server continues the history of another runner.
+pub(crate) trait Style {
+    /// The name of a suite.
+    fn suite_name<'r>(&self, suite: &'r SuiteRecord) -> &'r str {
+        &suite.plan.name
+    }
+
+    /// Changes the test case of a test without cases.
+    fn adapt(&self, _case: &mut TestCase, _suite: &SuiteRecord, _test: &TestRecord) {}
+}
+
+/// The names of the plan.
+struct AsPlanned;
+
+impl Style for AsPlanned {}
+
+fn report(record: &Record, folder: Option<&Path>, style: &dyn Style) -> Report {
     let name = record.run.as_ref().map_or("rtf", |run| &run.run);
     let mut report = Report::new(text(name));
     report.timestamp = time::at(record, rtf_model::Micros(0));
     report.set_time(record.last_at.as_duration());
-    let suites = record.suites.iter().map(|suite| test_suite(record, suite, folder));
+    let suites = record.suites.iter().map(|suite| test_suite(record, suite, (folder, style)));
     let of_run = problems::of_run(record);
     // Damage comes first: nothing that follows is certain.
     let (first, last) = if record.is_damaged() { (of_run, None) } else { (None, of_run) };
@@ -44,15 +76,25 @@ fn report(record: &Record, folder: Option<&Path>) -> Report {
     report
 }
 
-fn test_suite(record: &Record, suite: &SuiteRecord, folder: Option<&Path>) -> TestSuite {
-    let mut junit = TestSuite::new(text(&suite.plan.name));
+fn test_suite(
+    record: &Record,
+    suite: &SuiteRecord,
+    (folder, style): (Option<&Path>, &dyn Style),
+) -> TestSuite {
+    let mut junit = TestSuite::new(text(style.suite_name(suite)));
     if let Some(started) = suite.started {
         junit.timestamp = time::at(record, started);
         junit.set_time(suite.finished.unwrap_or(record.last_at).since(started));
     }
     properties(&mut junit, record, suite);
     for test in suite.tests.iter().filter_map(|id| record.tests.get(id.index())) {
-        junit.add_test_cases(case::of(record, test, folder));
+        let mut cases = case::of(record, test, folder);
+        if let [case] = &mut cases[..]
+            && TestCases::of(test).is_none()
+        {
+            style.adapt(case, suite, test);
+        }
+        junit.add_test_cases(cases);
     }
     for hook in suite.hooks.iter().filter_map(|id| record.hooks.get(id.index())) {
         junit.add_test_cases(hook::of(record, hook));
@@ -114,7 +156,7 @@ fn first_line(text: &str) -> &str {
 
 /// Text that XML can hold and that means no harm: control characters are
 /// written out, not dropped.
-fn text(text: &str) -> String {
+pub(crate) fn text(text: &str) -> String {
     escape::block(text).into_owned()
 }
 

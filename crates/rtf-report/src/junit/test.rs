@@ -230,13 +230,24 @@ fn system_out(test: &TestRecord, folder: Option<&Path>) -> String {
             }
             out += &text(&attempt.output);
         }
-        let Some(folder) = folder else { continue };
-        // The attachments of a case are in its own test case.
-        let is_kept = |it: &&Attachment| !explain::is_in_case(attempt, it.case);
-        for attachment in attempt.attachments.iter().filter(is_kept) {
-            attach(&mut out, folder, attachment);
-        }
+        attach_all(&mut out, folder, attempt);
     }
+    out
+}
+
+/// Adds the files of an attempt; those of a case are in its own test case.
+fn attach_all(out: &mut String, folder: Option<&Path>, attempt: &AttemptRecord) {
+    let Some(folder) = folder else { return };
+    let is_kept = |it: &&Attachment| !explain::is_in_case(attempt, it.case);
+    for attachment in attempt.attachments.iter().filter(is_kept) {
+        attach(out, folder, attachment);
+    }
+}
+
+/// The lines that name the files of a test.
+pub(crate) fn attachments(test: &TestRecord, folder: Option<&Path>) -> String {
+    let mut out = String::new();
+    test.attempts.iter().for_each(|attempt| attach_all(&mut out, folder, attempt));
     out
 }
 

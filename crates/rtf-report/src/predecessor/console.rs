@@ -82,9 +82,9 @@ impl ResultList {
         self.end_line();
         let style = style(line.word);
         if line.word == Word::Progress {
-            self.stream.push(&format!("{style}{}{style:#}\n", line.text));
+            self.stream.push(&format!("{style}{}{style:#}\n", line.text()));
         } else {
-            self.stream.push(&format!("{style}{}{style:#}{}\n", line.word.as_str(), line.text));
+            self.stream.push(&format!("{style}{}{style:#}{}\n", line.word.as_str(), line.text()));
         }
         if let Some(place) = line.place.as_ref().filter(|_| self.options.detail) {
             self.stream.push(&format!("{place}\n\n"));

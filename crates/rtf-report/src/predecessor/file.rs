@@ -44,7 +44,7 @@ pub fn write(out: &mut dyn Write, journal: &Path, detail: bool) -> io::Result<()
     out.write_all(summary::of(&record, "summary").as_bytes())
 }
 
-fn unreadable(error: JournalError) -> io::Error {
+pub(super) fn unreadable(error: JournalError) -> io::Error {
     match error {
         JournalError::Read { source, .. } => source,
         error => io::Error::other(error),
@@ -53,7 +53,7 @@ fn unreadable(error: JournalError) -> io::Error {
 
 fn put_all(out: &mut dyn Write, lines: &[ResultLine], detail: bool) -> io::Result<()> {
     for line in lines {
-        writeln!(out, "{}{}", line.word.as_str(), line.text)?;
+        writeln!(out, "{}{}", line.word.as_str(), line.text())?;
         if let Some(place) = line.place.as_ref().filter(|_| detail) {
             writeln!(out, "{place}\n")?;
         }

@@ -86,8 +86,8 @@ fn of_message(about: &str, message: &Message) -> ResultLine {
         MessageKind::Failure => (Word::Fail, "checks: "),
         MessageKind::Error => (Word::Error, ""),
     };
-    let place = message.location.as_ref().map(place);
-    ResultLine { place, ..ResultLine::about(word, about, &format!("{verb}{}", message.text)) }
+    let line = ResultLine::about(word, about, &format!("{verb}{}", message.text));
+    line.at(message.location.as_ref().map(place))
 }
 
 fn of_measurement(about: &str, measurement: &Measurement) -> ResultLine {
@@ -95,8 +95,8 @@ fn of_measurement(about: &str, measurement: &Measurement) -> ResultLine {
         Some(problem) => (Word::Fail, problem),
         None => (Word::Info, format!("{} = {}", measurement.name, measurement.value_with_unit())),
     };
-    let place = measurement.location.as_ref().map(place);
-    ResultLine { place, ..ResultLine::about(word, about, &format!("measures: {text}")) }
+    let line = ResultLine::about(word, about, &format!("measures: {text}"));
+    line.at(measurement.location.as_ref().map(place))
 }
 
 /// `test.cpp at 12.`

@@ -33,8 +33,9 @@ impl Word {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ResultLine {
     pub word: Word,
-    /// What stands after the word.
-    pub text: String,
+    /// The name before the text; a line about progress has none.
+    about: Option<String>,
+    text: String,
     /// The place in the source.
     pub place: Option<String>,
 }
@@ -42,12 +43,32 @@ pub(super) struct ResultLine {
 impl ResultLine {
     /// A line about the run, a suite or a test; `text` is harmless.
     pub fn progress(text: String) -> Self {
-        Self { word: Word::Progress, text, place: None }
+        Self { word: Word::Progress, about: None, text, place: None }
     }
 
     /// `(about) text`, made harmless.
     pub fn about(word: Word, about: &str, text: &str) -> Self {
-        let text = format!("({}) {}", escape::line(about), escape::block(text));
-        Self { word, text, place: None }
+        let (about, text) = (about.to_owned(), escape::block(text).into_owned());
+        Self { word, about: Some(about), text, place: None }
+    }
+
+    /// With the place in the source.
+    pub fn at(self, place: Option<String>) -> Self {
+        Self { place, ..self }
+    }
+
+    /// What stands after the word.
+    pub fn text(&self) -> String {
+        match &self.about {
+            Some(about) => format!("({}) {}", escape::line(about), self.text),
+            None => self.text.clone(),
+        }
+    }
+
+    /// Uses another name for what `name` is.
+    pub fn rename(&mut self, name: &str, other: &str) {
+        if self.about.as_deref() == Some(name) {
+            self.about = Some(other.to_owned());
+        }
     }
 }

@@ -64,6 +64,17 @@ fn every_test_that_did_not_pass_is_failed_in_the_file_and_in_the_counts() {
     }
 }
 
+#[test]
+fn junit_report() {
+    for name in ["verdicts", "nasty"] {
+        let (path, mut xml) = (stream_path(name), Vec::new());
+        predecessor::write_junit(&mut xml, &record(name), &path, false).unwrap();
+        let folder = path.parent().unwrap().display().to_string();
+        let xml = String::from_utf8(xml).unwrap().replace(&folder, "/run");
+        insta::assert_snapshot!(format!("predecessor-junit-{name}"), xml);
+    }
+}
+
 /// The file contains all messages, because it is generated from the journal.
 #[test]
 fn a_journal_that_cannot_be_read_leaves_no_file() {

@@ -20,10 +20,9 @@ use rtf_plan::plan::{Compatibility, Options, RunnerEnvironment};
 use rtf_process::fork_server::ForkMode;
 use rtf_report::predecessor::{self, ResultList, ResultListOptions};
 use rtf_report::run_dir::JOURNAL;
-use rtf_report::{ReportError, ReportFile, local_time};
+use rtf_report::{ReportError, ReportFile, WriteReport, local_time};
 use rtf_run::error::Failure;
 use rtf_run::finish::ResultTargets;
-use rtf_run::formats::ReportFormat;
 use rtf_run::guarded::{self, Supervision};
 use rtf_run::operator::Attendance;
 use rtf_run::request::{RunRequest, TestsRequest, WebRequest};
@@ -167,15 +166,24 @@ fn console_options(args: &Args) -> ResultListOptions {
 /// Opens the result file of the run in `results`, unless the user wants none.
 fn open_result_file(args: &Args, results: &Path) -> Option<Result<ReportFile, ReportError>> {
     let path = args.result_file()?;
-    if args.output_type == OutputType::Junit {
-        return Some(reports::open(ReportFormat::Junit, path, results));
-    }
     let (results, detail) = (results.to_owned(), args.detail);
-    let write = move |out: &mut dyn io::Write, record: &Record| {
+    let journal = move |record: &Record| {
         let run = record.run.as_ref().map_or("", |started| &started.run);
-        predecessor::write(out, &results.join(run).join(JOURNAL), detail)
+        results.join(run).join(JOURNAL)
     };
-    Some(ReportFile::new("the result file", path, Box::new(write)))
+    let (what, write): (_, WriteReport) = match args.output_type {
+        OutputType::Text => (
+            "the result file",
+            Box::new(move |out, record| predecessor::write(out, &journal(record), detail)),
+        ),
+        OutputType::Junit => (
+            "the JUnit report",
+            Box::new(move |out, record| {
+                predecessor::write_junit(out, record, &journal(record), detail)
+            }),
+        ),
+    };
+    Some(ReportFile::new(what, path, write))
 }
 
 /// The results directory.

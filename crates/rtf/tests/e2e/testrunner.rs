@@ -246,12 +246,65 @@ fn output_and_its_type() {
     let folder = folder();
     folder.testrunner(&["-t", "Good.lua", "--output-type", "junit"]);
     let junit = folder.read("result.xml");
-    assert!(junit.contains("<testcase name=\"Good\""), "{junit}");
+    assert!(junit.contains("<testcase name=\"Good.lua\""), "{junit}");
     folder.testrunner(&["-t", "Good.lua", "-o", "out/x", "--output-type=junit"]);
-    assert!(folder.read("out/x").contains("<testcase name=\"Good\""));
+    assert!(folder.read("out/x").contains("<testcase name=\"Good.lua\""));
     folder.testrunner(&["-t", "Good.lua", "--output", "out/y"]);
     assert!(folder.read("out/y").ends_with("Number of failed test cases  : 0\n"));
     assert!(!folder.path().join("result.txt").exists());
+}
+
+/// The class names of a JUnit report, and what the tests said.
+fn junit_lines(folder: &Folder) -> String {
+    let report = folder.redact(&folder.read("result.xml"));
+    let lines =
+        report.lines().map(str::trim).filter_map(|line| match line.strip_prefix("<testcase ") {
+            Some(attributes) => attributes.split_once(" timestamp=").map(|(names, _)| names),
+            None => line.strip_prefix("<system-out>").or(line.starts_with('[').then_some(line)),
+        });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// A server saw `Named#2` in the class `arm`, and what the test printed.
+#[test]
+fn a_junit_report_has_the_names_and_the_output_of_2_x() {
+    let folder = folder();
+    folder.file(
+        "Named.lua",
+        "TestCase.setup = function(param)
+  if param ~= '' then robottestingframework.setName(param) end
+  return true
+end
+TestCase.run = function() print('current 7 A') robottestingframework.testReport('on') end\n",
+    );
+    let test = |attributes: &str| format!("<test type='lua' {attributes}> Named.lua </test>");
+    let tests = ["", "param='Right Leg'", "", "name='left' param='Left Leg'"].map(test).concat();
+    folder.file("arm.xml", &format!("<suite name='arm'>{tests}<test> Bad.lua </test></suite>"));
+    let junit = ["-t", "Good.lua", "-e", "lab", "--output-type", "junit"];
+    folder.testrunner(&[junit.as_slice(), &["-s", "arm.xml"]].concat());
+    assert_snapshot!(junit_lines(&folder), @r#"
+    name="Good.lua" classname="default.Good.lua"
+    [INFO]  (Good.lua) reports: param: , environment: lab
+    [INFO]  (Good.lua) checks: closed
+    [INFO]  (Good.lua) reports: torn down
+    name="Named.lua" classname="arm.Named.lua"
+    [INFO]  (Named.lua) reports: on
+    name="Right Leg" classname="arm.Right Leg"
+    [INFO]  (Right Leg) reports: on
+    name="Named.lua" classname="arm.Named.lua"
+    [INFO]  (Named.lua) reports: on
+    name="left" classname="arm.left"
+    [INFO]  (left) reports: on
+    name="Bad.lua" classname="arm.Bad.lua"
+    [FAIL]  (Bad.lua) checks: joint 3 moves
+    [ERROR] (Bad.lua) no bus
+    "#);
+    folder.testrunner(&["-t", "Bad.lua", "--output-type", "junit", "--detail"]);
+    assert_snapshot!(junit_lines(&folder), @r#"
+    name="Bad.lua" classname="default.Bad.lua"
+    [FAIL]  (Bad.lua) checks: joint 3 moves ([FOLDER]/Bad.lua at 2)
+    [ERROR] (Bad.lua) no bus ([FOLDER]/Bad.lua at 3)
+    "#);
 }
 
 #[test]
