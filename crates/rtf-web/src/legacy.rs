@@ -1,12 +1,19 @@
 //! The two routes of robot-testing-framework 2.x, for its clients.
 
+use std::collections::VecDeque;
+
 use axum::extract::State;
-use rtf_model::{Event, EventKind, MessageKind, Record, SuiteRecord, TestRecord, Verdict};
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use rtf_model::{
+    Event, EventKind, MessageKind, Record, Source, SuiteId, SuiteRecord, TestFinished, TestRecord,
+    Verdict,
+};
 use rtf_report::journal::parse_event;
 use rtf_report::run_dir::LATEST;
 use serde::Serialize;
 
-use crate::app::{App, JsonResult};
+use crate::app::App;
 use crate::index::{Index, LineReader};
 use crate::problem::Problem;
 use crate::runs::Run;
@@ -23,24 +30,39 @@ struct Status {
     tests: Vec<u8>,
 }
 
-async fn read<T: Serialize>(
+/// A line with the type and the end that it had: programs strip one character of it, which
+/// was the `\r` of its chunk.
+#[derive(Debug)]
+pub struct Line(String);
+
+impl IntoResponse for Line {
+    fn into_response(self) -> Response {
+        let kind = HeaderValue::from_static("text/turtle");
+        ([(header::CONTENT_TYPE, kind)], self.0 + "\r\n").into_response()
+    }
+}
+
+async fn read(
     app: App,
-    view: impl FnOnce(&Run, &Index) -> Result<T, Problem> + Send + 'static,
-) -> JsonResult {
+    view: impl FnOnce(&Run, &Index) -> Result<String, Problem> + Send + 'static,
+) -> Result<Line, Problem> {
     let runs = app.runs.clone();
     let current = crate::app::blocking(move || Ok(runs.current())).await?;
-    app.read(current.unwrap_or_else(|| LATEST.to_owned()), view).await
+    let current = current.unwrap_or_else(|| LATEST.to_owned());
+    app.with_run(current, move |run| Ok(Line(view(run, &*run.read()?)?))).await
 }
 
 /// The suite that runs or ran last, and its tests.
-pub async fn status(State(app): State<App>) -> JsonResult {
+pub async fn status(State(app): State<App>) -> Result<Line, Problem> {
     read(app, |_, index| {
         let record = &index.record;
         let suite = last(record);
         let tests = suite.map_or(&[][..], |suite| &suite.tests);
         let tests = tests.iter().filter_map(|id| record.tests.get(id.index())).map(number);
         let name = suite.map(|suite| suite.plan.name.clone()).unwrap_or_default();
-        Ok(Status { name, tests: tests.collect() })
+        let status = Status { name, tests: tests.collect() };
+        let failed = StatusCode::INTERNAL_SERVER_ERROR;
+        serde_json::to_string(&status).map_err(|error| Problem::new(failed, error.to_string()))
     })
     .await
 }
@@ -60,14 +82,14 @@ fn number(test: &TestRecord) -> u8 {
     }
 }
 
-/// The last lines of what was reported, as HTML in a JSON string.
-pub async fn update(State(app): State<App>) -> JsonResult {
+/// The last lines of what was reported, as HTML.
+pub async fn update(State(app): State<App>) -> Result<Line, Problem> {
     read(app, |run, index| {
         let failed = crate::runs::unreadable;
         let end = index.offset;
         let start = index.positions.at(end.saturating_sub(END));
         let mut lines = LineReader::between(run.journal()?, start, end).map_err(failed)?;
-        let mut shown = std::collections::VecDeque::new();
+        let mut shown = VecDeque::new();
         while let Some(line) = lines.next().map_err(failed)? {
             let event = parse_event(line.text);
             shown.extend(event.ok().and_then(|event| html(&event, &index.record)));
@@ -75,45 +97,99 @@ pub async fn update(State(app): State<App>) -> JsonResult {
                 shown.pop_front();
             }
         }
-        Ok(shown.into_iter().collect::<String>())
+        Ok(shown.into_iter().collect())
     })
     .await
 }
 
+/// The line of an event.
 fn html(event: &Event, record: &Record) -> Option<String> {
-    let title = |text: String| format!("<br> <b>{}</b>", escaped(&text));
-    let suite = |id: &rtf_model::SuiteId| {
-        record.suites.get(id.index()).map(|suite| suite.plan.name.clone()).unwrap_or_default()
-    };
+    let suite = |id: SuiteId| record.suites.get(id.index()).map_or("", |it| &it.plan.name);
+    let test = |id| name(record, Source::Test(id));
     Some(match &event.kind {
+        EventKind::RunStarted(_) => title("Starting test runner."),
+        EventKind::RunFinished { .. } => title("Ending test runner."),
         EventKind::SuiteStarted { suite: id } => {
-            title(format!("Test suite {} started...", suite(id)))
+            title(&format!("Test suite {} started...", suite(*id)))
         }
-        EventKind::SuiteFinished { suite: id } => title(format!("Test suite {} ended", suite(id))),
-        EventKind::TestStarted { test, .. } => {
-            title(format!("Test case {} started...", record.full_name(*test)))
+        EventKind::SuiteFinished { suite: id } => {
+            let word = word(suite_passed(record, *id));
+            title(&format!("Test suite {} {word}", suite(*id)))
         }
-        EventKind::TestFinished(finished) => {
-            let word = if finished.verdict.is_green() { "passed!" } else { "failed!" };
-            title(format!("Test case {} {word}", record.full_name(finished.test)))
+        EventKind::TestStarted { test: id, .. } => {
+            title(&format!("Test case {} started...", test(*id)))
         }
+        EventKind::TestFinished(finished) => ended(test(finished.test), finished),
         EventKind::FixtureCollapsed { fixture, reason, .. } => {
-            let name = record.fixture(*fixture).map_or("", |fixture| &fixture.plan.name);
-            format!("<br> [ERROR] fixture {} collapsed: {}", escaped(name), escaped(reason))
+            problem(name(record, Source::Fixture(*fixture)), &format!("collapsed : {reason}"))
         }
-        EventKind::Message { message, .. } => {
-            let word = match message.kind {
-                MessageKind::Report | MessageKind::Check => "[INFO]",
-                MessageKind::Failure => "[FAIL]",
-                MessageKind::Error => "[ERROR]",
-            };
-            format!("<br> {word} {}", escaped(&message.text))
+        EventKind::Message { source, message, .. } => {
+            let about = name(record, *source);
+            match message.kind {
+                MessageKind::Report => said(GREEN, "INFO", about, &["reports", &message.text]),
+                MessageKind::Check => said(GREEN, "INFO", about, &["checks", &message.text]),
+                MessageKind::Failure => said(RED, "FAIL", about, &["checks", &message.text]),
+                MessageKind::Error => problem(about, &message.text),
+            }
         }
         _ => return None,
     })
 }
 
-/// As text between tags; without characters that JSON would escape as well.
+/// The end of an attempt, with its reason unless the test reported it.
+fn ended(test: &str, finished: &TestFinished) -> String {
+    let end = title(&format!("Test case {test} {}", word(finished.verdict.is_green())));
+    let reported = [Verdict::Passed, Verdict::Skipped, Verdict::Failed, Verdict::Error];
+    if reported.contains(&finished.verdict) {
+        return end;
+    }
+    let reason = finished.reason.as_deref().unwrap_or_default();
+    problem(test, &format!("{} : {reason}", finished.verdict)) + &end
+}
+
+fn word(passed: bool) -> &'static str {
+    if passed { "passed!" } else { "failed!" }
+}
+
+fn suite_passed(record: &Record, id: SuiteId) -> bool {
+    let mut tests = record.tests.iter().filter(|test| test.plan.suite == id);
+    tests.all(|test| record.is_test_green(test)) && record.suite_problems(id).is_empty()
+}
+
+fn name(record: &Record, source: Source) -> &str {
+    let name = match source {
+        Source::Test(id) => record.tests.get(id.index()).map(|test| &test.plan.name),
+        Source::Fixture(id) => record.fixture(id).map(|fixture| &fixture.plan.name),
+        Source::Hook(id) => record.hooks.get(id.index()).map(|hook| &hook.plan.name),
+    };
+    name.map_or("", String::as_str)
+}
+
+const BLUE: &str = "blue";
+const GREEN: &str = "green";
+const RED: &str = "red";
+
+fn bold(colour: &str, html: &str) -> String {
+    format!("<font color=\"{colour}\"><b>{html}</b></font>")
+}
+
+fn title(text: &str) -> String {
+    format!("<br> {}", bold(BLUE, &format!(" {} ", escaped(text))))
+}
+
+fn problem(about: &str, text: &str) -> String {
+    said(RED, "ERROR", about, &[text])
+}
+
+/// `[INFO]  (about) reports : text.`
+fn said(colour: &str, word: &str, about: &str, parts: &[&str]) -> String {
+    // The texts are in one column.
+    let blanks = "&nbsp;".repeat(6 - word.len());
+    let word = bold(colour, &format!("[{word}]{blanks}"));
+    format!("<br> {word} ({}) {}.", escaped(about), escaped(&parts.join(" : ")))
+}
+
+/// As text between tags.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -122,8 +198,7 @@ fn escaped(text: &str) -> String {
             '<' => out += "&lt;",
             '>' => out += "&gt;",
             '"' => out += "&quot;",
-            '\'' => out += "&#39;",
-            '\\' => out += "&#92;",
+            '\'' => out += "&apos;",
             '\n' => out += "<br>",
             c if c.is_control() => out.push('\u{FFFD}'),
             c => out.push(c),
@@ -137,10 +212,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn as_json_it_is_the_same_text_between_quotation_marks() {
-        let hostile = "\"><script>alert('\\')</script>\u{0}\u{1b}[31m\n&amp; 🤖";
-        let html = escaped(hostile);
-        assert_eq!(serde_json::to_string(&html).unwrap(), format!("\"{html}\""));
-        assert!(!html.contains("<script"));
+    fn a_message_is_text_in_a_line_of_its_own() {
+        let hostile = "\"><script>alert('\\')</script>\u{1b}[31m\n&amp; 🤖";
+        assert_eq!(
+            said(RED, "FAIL", "<arm>", &["checks", hostile]),
+            "<br> <font color=\"red\"><b>[FAIL]&nbsp;&nbsp;</b></font> (&lt;arm&gt;) checks : \
+             &quot;&gt;&lt;script&gt;alert(&apos;\\&apos;)&lt;/script&gt;\u{FFFD}[31m<br>&amp;amp; 🤖."
+        );
     }
 }

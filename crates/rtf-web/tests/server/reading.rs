@@ -191,7 +191,6 @@ fn whatever_a_test_says_it_stays_text() {
         (test.to_owned(), "/test/name"),
         (format!("{test}/attempts/1/messages"), "/messages/0/message/text"),
         (format!("{test}/attempts/1/output"), "/output/0/text"),
-        ("/status".to_owned(), "/name"),
     ] {
         let answer = world.get(&path);
         assert_eq!(answer.header("content-type"), Some("application/json"), "{path}");
@@ -200,11 +199,45 @@ fn whatever_a_test_says_it_stays_text() {
     }
     let output = world.get(&format!("{test}/attempts/1/output")).json();
     assert_eq!(output["output"][1]["text"].as_str().map(str::len), Some(long.len()));
-    assert_eq!(world.get("/status").json()["testStatus"], json!([2]));
+    let status = world.get("/status");
+    assert_eq!(status.json(), json!({"name": HOSTILE, "testStatus": [2]}));
     let update = world.get("/update");
-    let Value::String(html) = update.json() else { panic!("a string") };
-    assert_eq!(update.text(), format!("\"{html}\""), "the same for those who take it as HTML");
-    assert!(html.contains("[ERROR]") && !html.contains("<script"), "{html}");
+    for answer in [&status, &update] {
+        assert_eq!(answer.header("content-type"), Some("text/turtle"), "as in 2.x");
+        assert_eq!(answer.header("x-content-type-options"), Some("nosniff"));
+        // The last character belonged to the end of its line.
+        assert_eq!(answer.text().match_indices("\r\n").count(), 1);
+        assert!(answer.text().ends_with("\r\n"));
+    }
+    let html = update.text();
+    assert!(!html.contains("<script") && html.starts_with("<br> <font"), "{html}");
+}
+
+/// `/update` was a string in JSON, with quotation marks that an old page showed.
+#[test]
+fn the_clients_of_the_predecessor_get_its_html() {
+    let (world, mut run) = World::new();
+    run.plan("arm", &["only"]);
+    run.start(TEST);
+    run.say(MessageKind::Report, "moving");
+    run.say(MessageKind::Check, "closed");
+    run.say(MessageKind::Failure, "too fast");
+    run.say(MessageKind::Error, "no bus");
+    run.finish(TEST, Verdict::Failed);
+    run.flush();
+    let html = world.get("/update").text().replace("</b></font>", "");
+    let lines: Vec<_> = html.trim_end().split("<br> <font color=").skip(1).collect();
+    let wanted = [
+        "\"blue\"><b> Starting test runner. ",
+        "\"blue\"><b> Test suite arm started... ",
+        "\"blue\"><b> Test case only started... ",
+        "\"green\"><b>[INFO]&nbsp;&nbsp; (only) reports : moving.",
+        "\"green\"><b>[INFO]&nbsp;&nbsp; (only) checks : closed.",
+        "\"red\"><b>[FAIL]&nbsp;&nbsp; (only) checks : too fast.",
+        "\"red\"><b>[ERROR]&nbsp; (only) no bus.",
+        "\"blue\"><b> Test case only failed!",
+    ];
+    assert_eq!(lines, wanted, "{html}");
 }
 
 #[test]

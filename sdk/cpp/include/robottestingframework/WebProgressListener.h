@@ -89,7 +89,7 @@ private:
                     std::to_string(message.getSourceLineNumber()) + ")";
         }
         const std::string name = test->getName();
-        keep(kind, name, text, [&] { status_.reported(word, name, text); });
+        keep(kind, name, text, [&] { status_.reported(word, name, message); });
     }
 
     // Updates both views of the events at once.
@@ -108,28 +108,31 @@ private:
     {
         const std::lock_guard<std::mutex> lock(mutex_);
         running_ = running;
+        status_.runner(running);
     }
 
     internal::Answer answer(const std::string &path)
     {
         const std::string events = "/events";
         if (path == "/") {
-            return internal::Answer{200, "text/html", internal::web_page()};
+            return internal::Answer{200, "text/html; charset=utf-8", internal::no_sniffing(),
+                                    internal::web_page()};
         }
         if (path == "/status" || path == "/update") {
             const std::lock_guard<std::mutex> lock(mutex_);
-            return internal::Answer{200, "application/json",
+            // Pages of other sites may read them, as those of 2.x.
+            return internal::Answer{200, "text/turtle", "Access-Control-Allow-Origin: *\r\n",
                                     path == "/status" ? status_.status() : status_.update()};
         }
         if (path.compare(0, events.size(), events) != 0) {
-            return internal::Answer{404, "text/plain", "no such page\n"};
+            return internal::Answer{404, "text/plain", internal::no_sniffing(), "no such page\n"};
         }
         const std::size_t from = path.find("from=");
         const std::size_t first =
             from == std::string::npos
                 ? 0
                 : std::strtoul(path.c_str() + from + std::strlen("from="), nullptr, 10);
-        return internal::Answer{200, "application/json", news(first)};
+        return internal::Answer{200, "application/json", internal::no_sniffing(), news(first)};
     }
 
     std::string news(std::size_t first)

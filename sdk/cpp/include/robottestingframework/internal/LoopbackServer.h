@@ -27,8 +27,16 @@ struct Answer
 {
     int status;
     std::string type;
+    // Further lines of the head, each with its end.
+    std::string head;
     std::string body;
 };
+
+// Browsers must not guess another type.
+inline std::string no_sniffing()
+{
+    return "X-Content-Type-Options: nosniff\r\n";
+}
 
 class LoopbackServer
 {
@@ -131,14 +139,11 @@ private:
             request.append(part, static_cast<std::size_t>(count));
         }
         const Answer answer = decide(request);
-        // Browsers must not guess another type: nosniff.
-        const bool is_json = answer.type == "application/json";
         send_all(client, "HTTP/1.0 " + std::to_string(answer.status) +
                              (answer.status == 200 ? " OK" : " Refused") +
-                             "\r\nContent-Type: " + answer.type +
-                             (is_json ? "" : "; charset=utf-8\r\nX-Content-Type-Options: nosniff") +
-                             "\r\nContent-Length: " + std::to_string(answer.body.size()) +
-                             "\r\n\r\n" + answer.body);
+                             "\r\nContent-Type: " + answer.type + "\r\n" + answer.head +
+                             "Content-Length: " + std::to_string(answer.body.size()) + "\r\n\r\n" +
+                             answer.body);
     }
 
     // Whether the empty line has arrived; typed requests have lines with \n.
@@ -151,14 +156,14 @@ private:
     Answer decide(const std::string &request) const
     {
         if (request.compare(0, 4, "GET ") != 0) {
-            return Answer{405, "text/plain", "only GET\n"};
+            return Answer{405, "text/plain", no_sniffing(), "only GET\n"};
         }
         // A page of another site may resolve its name to this machine (DNS rebinding).
         // Browsers always send the name; programs with HTTP/1.0 need not.
         const std::string host = header(request, "\nhost:");
         const std::string name = host.substr(0, host.find(':'));
         if (!host.empty() && name != "127.0.0.1" && name != "localhost") {
-            return Answer{403, "text/plain", "only for 127.0.0.1\n"};
+            return Answer{403, "text/plain", no_sniffing(), "only for 127.0.0.1\n"};
         }
         return handler_(request.substr(4, request.find_first_of(" \r\n", 4) - 4));
     }

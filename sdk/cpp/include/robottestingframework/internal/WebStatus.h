@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The answers of robot-testing-framework 2.x's web listener: /status, a JSON object
 // with the suite and the state of each test, and /update, HTML of the messages. Both
-// are one line of valid JSON for any names.
+// are one line that ends with \r\n: clients of 2.x strip one character, which was the \r
+// of its chunk.
 #ifndef ROBOTTESTINGFRAMEWORK_INTERNAL_WEBSTATUS_H
 #define ROBOTTESTINGFRAMEWORK_INTERNAL_WEBSTATUS_H
 
@@ -12,23 +13,45 @@
 
 #include <rtf/internal/SessionJson.hpp>
 
+#include "../TestMessage.h"
+
 namespace robottestingframework {
 namespace internal {
 
 using ::rtf::internal::session::json_string;
 
-// Text between HTML tags, without a character that JSON would escape.
+inline std::string html_letter(char letter)
+{
+    switch (letter) {
+    case '&':
+        return "&amp;";
+    case '<':
+        return "&lt;";
+    case '>':
+        return "&gt;";
+    case '"':
+        return "&quot;";
+    case '\'':
+        return "&apos;";
+    case '\n':
+        return "<br>";
+    default:
+        return std::string(1, letter < ' ' ? ' ' : letter);
+    }
+}
+
+// Text between HTML tags. A byte that is not UTF-8 is replaced.
 inline std::string html_text(const std::string &text)
 {
     std::string html;
-    for (const char letter : text) {
-        const bool is_plain = letter == ' ' || letter < 0 ||
-                              (letter > ' ' && letter != '&' && letter != '<' && letter != '>' &&
-                               letter != '"' && letter != '\'' && letter != '\\');
-        html +=
-            is_plain
-                ? std::string(1, letter)
-                : "&#" + std::to_string(static_cast<unsigned>(letter == 0 ? ' ' : letter)) + ";";
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t length = ::rtf::internal::session::utf8_length(text, at);
+        if (length == 1) {
+            html += html_letter(text[at]);
+        } else {
+            html += length == 0 ? "\xEF\xBF\xBD" : text.substr(at, length);
+        }
+        at += length == 0 ? 1 : length;
     }
     return html;
 }
@@ -36,6 +59,7 @@ inline std::string html_text(const std::string &text)
 class WebStatus
 {
 public:
+    void runner(bool starts) { title(starts ? "Starting test runner." : "Ending test runner."); }
     void suite_started(const std::string &name, std::size_t tests)
     {
         name_ = name;
@@ -69,10 +93,15 @@ public:
         }
         title("Test case " + name + (passed ? " passed!" : " failed!"));
     }
-    // Kind: INFO, FAIL or ERROR.
-    void reported(const char *kind, const std::string &name, const std::string &text)
+    // Word: INFO, FAIL or ERROR.
+    void reported(const std::string &word, const std::string &name, const TestMessage &message)
     {
-        keep(std::string("<br> [") + kind + "] (" + html_text(name) + ") " + html_text(text));
+        const std::string detail = message.getDetail();
+        const std::string text = message.getMessage() + (detail.empty() ? "" : " : ") + detail;
+        // The texts of messages are in one column.
+        const std::string blanks = word == "ERROR" ? "&nbsp;" : "&nbsp;&nbsp;";
+        keep(bold(word == "INFO" ? "green" : "red", "[" + word + "]" + blanks) + " (" +
+             html_text(name) + ") " + html_text(text) + ".");
     }
 
     std::string status() const
@@ -81,7 +110,7 @@ public:
         for (const State state : states_) {
             states += (states.empty() ? "" : ",") + std::to_string(static_cast<int>(state));
         }
-        return "{\"name\":" + json_string(name_) + ",\"testStatus\":[" + states + "]}\n";
+        return "{\"name\":" + json_string(name_) + ",\"testStatus\":[" + states + "]}\r\n";
     }
     std::string update() const
     {
@@ -89,17 +118,22 @@ public:
         for (const std::string &line : lines_) {
             html += line;
         }
-        return json_string(html) + "\n";
+        return html + "\r\n";
     }
 
 private:
     enum class State { pending, running, failed, passed };
 
-    void title(const std::string &text) { keep("<br> <b>" + html_text(text) + "</b>"); }
-
-    void keep(const std::string &line)
+    static std::string bold(const std::string &colour, const std::string &html)
     {
-        lines_.push_back(line);
+        return "<font color=\"" + colour + "\"><b>" + html + "</b></font>";
+    }
+
+    void title(const std::string &text) { keep(bold("blue", " " + html_text(text) + " ")); }
+
+    void keep(const std::string &html)
+    {
+        lines_.push_back("<br> " + html);
         if (lines_.size() > 500) {
             lines_.pop_front();
         }
