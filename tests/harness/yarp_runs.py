@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import socket
+import subprocess
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
@@ -9,7 +12,10 @@ from pathlib import Path
 import network
 import pytest
 from processes import select
-from run import Run, expect
+from run import RUN_SECS, Run, expect
+
+SERVER = ("127.0.0.1", 10000)
+"""YARP's usual port. Each of these tests has a private network."""
 
 
 class YarpRuns:
@@ -34,10 +40,40 @@ class YarpRuns:
             )
         )
 
+    @contextmanager
+    def name_server(self) -> Iterator[None]:
+        """A name server in YARP's usual namespace, as a user starts one; a run leaves it alone."""
+        self.home.mkdir(exist_ok=True)
+        address = self.home / "yarp.conf"
+        # With `--write` it would write the address of the network's other interface.
+        content = f"{SERVER[0]} {SERVER[1]} yarp\n"
+        address.write_text(content)
+        options = ["--read", "--silent", "--ip", SERVER[0], "--socket", str(SERVER[1])]
+        with subprocess.Popen(["yarpserver", *options], stdout=subprocess.DEVNULL) as server:
+            try:
+                wait_for_port()
+                yield
+                expect("the name server has ended", server.poll(), None)
+                expect("its address", address.read_text(), content)
+            finally:
+                server.terminate()
+        address.unlink()
+
     def nothing_left(self) -> None:
         """No process is left, and no address of a dead name server."""
         expect("processes left", self.processes(), [])
         expect("files left", [str(path) for path in self.home.rglob("*") if path.is_file()], [])
+
+
+def wait_for_port() -> None:
+    """Waits until the name server accepts connections."""
+    deadline = time.monotonic() + RUN_SECS
+    while True:
+        with socket.socket() as client:
+            if client.connect_ex(SERVER) == 0:
+                return
+        assert time.monotonic() < deadline, "the name server does not listen"
+        time.sleep(0.02)
 
 
 @contextmanager

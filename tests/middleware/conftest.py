@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
+from checkout import ROOT
 
 
 @pytest.fixture
@@ -16,3 +18,10 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for name in ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP", "YARP_NAMESPACE"):
         monkeypatch.delenv(name, raising=False)
     return directory
+
+
+@pytest.fixture
+def data_of_yarp(monkeypatch: pytest.MonkeyPatch) -> None:
+    """YARP has more data."""
+    data = ROOT / "tests/fixtures/yarp/data"
+    monkeypatch.setenv("YARP_DATA_DIRS", f"{os.environ['YARP_DATA_DIRS']}:{data}")

@@ -5,7 +5,6 @@ All programs are YARP's own. The tests of example 03 kill them.
 
 from __future__ import annotations
 
-import os
 import signal
 import tarfile
 from collections.abc import Iterator
@@ -118,13 +117,6 @@ def test_the_data_of_a_failed_test_is_attached(runs: YarpRuns) -> None:
     expect("enough lines", len(lines) > 10, True)
     expect("numbers in a line", {len(line.split()) for line in lines}, {8})
     runs.nothing_left()
-
-
-@pytest.fixture
-def data_of_yarp(monkeypatch: pytest.MonkeyPatch) -> None:
-    """YARP has more data."""
-    data = SUITES.parent / "data"
-    monkeypatch.setenv("YARP_DATA_DIRS", f"{os.environ['YARP_DATA_DIRS']}:{data}")
 
 
 @pytest.mark.usefixtures("data_of_yarp")

@@ -5,6 +5,7 @@ Most are as for RTF 1.x and 2.x, where a fixture in their process had made the n
 
 from __future__ import annotations
 
+import fcntl
 import functools
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,7 +13,7 @@ from pathlib import Path
 import pytest
 from checkout import BUILD, ROOT, call
 from observed import observe
-from run import expect
+from run import Run, expect
 from yarp_runs import YarpRuns, quiet_runs
 
 pytestmark = [pytest.mark.middleware("yarp"), pytest.mark.outside_network]
@@ -21,8 +22,11 @@ SOURCES = "tests/fixtures/yarp/plugins"
 
 @functools.cache
 def plugins() -> Path:
-    """Builds the plug-ins, and returns their directory."""
-    call("tools/plugins.sh", SOURCES)
+    """Builds the plug-ins, one process at a time, and returns their directory."""
+    BUILD.mkdir(exist_ok=True)
+    with (BUILD / "yarp-plugins.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        call("tools/plugins.sh", SOURCES)
     return BUILD / SOURCES
 
 
@@ -58,3 +62,42 @@ def test_plugins_find_a_network(
         expect("output", "the network is left: 0" in test.output["stdout"], True)
     expect("tests with a network", len(own), 2 if suite == "shared" else 1)
     runs.nothing_left()
+
+
+SENT = [f"joint {joint} is sent" for joint in range(5)]
+
+
+@pytest.mark.usefixtures("data_of_yarp")
+def test_a_suite_of_2x_uses_the_name_server_of_the_user(runs: YarpRuns) -> None:
+    """In the form of icub-tests: it had a private namespace, without a name server."""
+    with runs.name_server():
+        run = runs.start("basics.xml")
+        expect("exit code", run.wait(), 0)
+        checks_pass(run)
+        (prepared,) = run.events("suite-prepared")
+        private = {each["name"] for each in prepared["variables"]}
+        expect("the namespace is private", "YARP_NAMESPACE" in private, False)
+    runs.nothing_left()
+
+
+@pytest.mark.usefixtures("data_of_yarp")
+def test_a_suite_of_2x_uses_its_own_name_server(runs: YarpRuns, tmp_path: Path) -> None:
+    """The same suite with the fixture `yarpserver`, while the user's server runs."""
+    text = (runs.suites / "basics.xml").read_text()
+    suite = tmp_path / "basics.xml"
+    suite.write_text(text.replace("<fixture ", "<fixture> yarpserver </fixture>\n    <fixture ", 1))
+    with runs.name_server():
+        run = runs.start(str(suite))
+        expect("exit code", run.wait(), 0)
+        checks_pass(run)
+    runs.nothing_left()
+
+
+def checks_pass(run: Run) -> None:
+    """Each of the five tests has passed and has reported its check as a check."""
+    expect("verdicts", run.attempts(), ["passed"] * 5)
+    messages = [event["message"] for event in run.events("message")]
+    checks = [message["text"] for message in messages if message["kind"] == "check"]
+    expect("checks", checks, SENT)
+    names = [message["text"] for message in messages if message["kind"] == "report"]
+    expect("names", names, [f"test name: Neck {axis}" for axis in ("pitch", "roll", "yaw")])

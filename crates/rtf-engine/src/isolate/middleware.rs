@@ -18,6 +18,8 @@ const DOMAIN: &str = "ROS_DOMAIN_ID";
 const RANGE: &str = "ROS_AUTOMATIC_DISCOVERY_RANGE";
 const FORMER_RANGE: &str = "ROS_LOCALHOST_ONLY";
 const ROS2: [&str; 3] = [DOMAIN, RANGE, FORMER_RANGE];
+/// YARP's programs find their name server by its namespace.
+const NAMESPACE: &str = "YARP_NAMESPACE";
 /// The releases of ROS 2 without `RANGE`. Later ones warn about `FORMER_RANGE`.
 const FORMER_RANGE_RELEASES: [&str; 3] = ["foxy", "galactic", "humble"];
 
@@ -103,7 +105,9 @@ impl MiddlewareIds<'_> {
         let local_master = own_master && is_here;
         let mut variables = Vec::new();
         for (name, value) in self.all(plan, &user) {
-            if is_written(plan, name) || (is_ros2_only && !ROS2.contains(&name)) {
+            let shares_name_server = plan.isolate.shares_name_server && name == NAMESPACE;
+            let is_shared = shares_name_server || is_ros2_only && !ROS2.contains(&name);
+            if is_written(plan, name) || is_shared {
                 continue;
             }
             // The user's domain may span machines, and needs the user's range.
@@ -151,7 +155,7 @@ impl MiddlewareIds<'_> {
         ];
         if let Some(domain) = self.domain {
             all.insert(0, (DOMAIN, domain.to_string()));
-            all.insert(5, ("YARP_NAMESPACE", format!("/rtf{domain}")));
+            all.insert(5, (NAMESPACE, format!("/rtf{domain}")));
         }
         all
     }

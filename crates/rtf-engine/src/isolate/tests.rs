@@ -140,6 +140,21 @@ fn the_address_of_nodes_belongs_to_the_master() {
     assert_eq!(hostname(variables(OwnMiddleware::UnlessSet, &user[..1], &[])), None);
 }
 
+/// `shares_name_server` is for suites that start other middleware.
+#[test]
+fn a_suite_without_a_name_server_uses_that_of_the_user() {
+    let mut plan = plan_of("");
+    plan.env = Arc::default();
+    plan.isolate.middleware = OwnMiddleware::UnlessSet;
+    plan.isolate.shares_name_server = true;
+    let run_dir = tempfile::tempdir().expect("a directory");
+    let own =
+        MiddlewareIds { run: "RUN", run_dir: run_dir.path(), domain: Some(42), ports: &ports() };
+    let names: Vec<_> = own.variables(&plan, |_| None).into_iter().map(|own| own.name).collect();
+    assert_eq!(names.len(), ALL.len() - 1, "{names:?}");
+    assert!(!names.contains(&"YARP_NAMESPACE".to_owned()));
+}
+
 #[test]
 fn what_the_suite_sets_itself_is_left_to_it() {
     let written = [("ROS_DOMAIN_ID", "3"), ("YARP_NAMESPACE", "/lab")];

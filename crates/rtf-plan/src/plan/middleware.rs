@@ -1,5 +1,4 @@
-//! Probes of middleware, as commands: `rtf` itself speaks no middleware. Also
-//! defines which of the shipped fixture managers start middleware.
+//! Probes and signals of middleware, as commands: `rtf` itself speaks no middleware.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -11,7 +10,7 @@ use super::host_kind;
 use super::plugin_search::shipped_dir;
 use super::program::utf8;
 use super::search_scope::SearchScope;
-use crate::suite::{DeclaredPlugin, MiddlewareProbe, SignalMiddleware};
+use crate::suite::{MiddlewareProbe, SignalMiddleware};
 
 /// The default limit for one answer.
 pub(super) const TIMEOUT: Duration = Duration::from_secs(5);
@@ -23,16 +22,6 @@ const PROGRAM: &str = "rtf_fixtures/probe.py";
 const RECORDED_SIGNALS: &str = "rtf_fixtures/recorded_signals.py";
 /// Options that speed up the interpreter; the ROS 2 probes need installed packages.
 const ISOLATED: [&str; 2] = ["-E", "-S"];
-
-/// The fixture managers that start middleware. Recorders use existing middleware.
-const STARTING_MIDDLEWARE: [&str; 6] =
-    ["roscore", "roslaunch", "yarpserver", "yarpmanager", "ros2launch", "orocos"];
-
-/// Checks by its name whether a fixture starts middleware. A user's plug-in with
-/// the name of a shipped one is expected to do the same.
-pub(super) fn starts_middleware(plugin: &DeclaredPlugin) -> bool {
-    plugin.plugin_type.is_none() && STARTING_MIDDLEWARE.contains(&plugin.name.value.as_str())
-}
 
 /// Returns the program and first arguments of a command that writes values of topics or ports.
 pub(super) fn signals(

@@ -31,6 +31,7 @@ mod hosts;
 mod input_file;
 mod inputs;
 mod installed;
+mod isolation;
 mod known_failure;
 mod matrix;
 pub mod matrix_file;

@@ -16,14 +16,11 @@ use super::search_scope::SearchScope;
 use super::signals::DeclaredSignals;
 use super::test_planner::{PlannedTests, SharedLimits, TestPlanner};
 use super::{
-    Compatibility, Isolation, OwnMiddleware, SuitePlan, SuiteSettings, TestPlan, TestSettings,
-    clock, faults, fixture, hook, middleware, signals,
+    Compatibility, SuitePlan, SuiteSettings, TestPlan, TestSettings, clock, faults, fixture, hook,
+    isolation, signals,
 };
 use crate::config;
-use crate::suite::{
-    ClockSource, DeclaredMiddleware, DeclaredSourceKind, DeclaredSuite, DeclaredTest, FixtureKind,
-    SignalMiddleware, SourceText,
-};
+use crate::suite::{DeclaredSuite, DeclaredTest, SourceText};
 
 /// The name of the suite of the plug-ins that are given directly.
 const DIRECT_PLUGINS: &str = "plug-ins";
@@ -48,7 +45,7 @@ pub(super) fn plan_suite(
         Compatibility::Native => (suite_dir, None),
         Compatibility::Predecessor => (runner.current_dir.clone(), Some(suite_dir)),
     };
-    let isolate = isolation(&suite);
+    let isolate = isolation::plan(&suite);
     let env = Arc::new(suite.env);
     let name = suite.name.map(|name| name.value).unwrap_or_else(|| stem(&file.path));
     let named = suite.tests.iter().filter(|test| is_first_of_matrix(test));
@@ -103,44 +100,6 @@ pub(super) fn plan_suite(
 
 fn is_first_of_matrix(test: &DeclaredTest) -> bool {
     test.combination.as_ref().is_none_or(|combination| combination.is_first)
-}
-
-/// Determines the private resources of a suite, as specified in `spec/suite.md`.
-fn isolation(suite: &DeclaredSuite) -> Isolation {
-    let network = suite.isolate.network;
-    // A fixture outside of the suite cannot know the ids of private middleware. A
-    // user's plug-in may start middleware or use an existing one: as in 2.x, its
-    // suite shares a running master or name server. ROS 2 has no such server, and
-    // each test may start nodes.
-    let (mut starts, mut is_outside) = (false, reads_running_robot(suite));
-    for fixture in &suite.fixtures {
-        match &fixture.body {
-            FixtureKind::Attached(_) => is_outside = true,
-            FixtureKind::Process(process) if process.host.is_some() => is_outside = true,
-            FixtureKind::Process(_) => starts = true,
-            FixtureKind::Plugin(plugin) => starts |= middleware::starts_middleware(plugin),
-        }
-    }
-    let middleware = match suite.isolate.middleware {
-        Some(DeclaredMiddleware::Own) => OwnMiddleware::Always,
-        Some(DeclaredMiddleware::Shared) => OwnMiddleware::No,
-        // A private network cannot reach shared middleware.
-        None if network => OwnMiddleware::Always,
-        None if is_outside => OwnMiddleware::No,
-        None if starts => OwnMiddleware::UnlessSet,
-        None => OwnMiddleware::Ros2UnlessSet,
-    };
-    Isolation { network, middleware, ports: suite.isolate.ports.clone() }
-}
-
-/// Whether the suite waits for messages of ROS 2, and has no fixture that could send them.
-fn reads_running_robot(suite: &DeclaredSuite) -> bool {
-    let has_topics = suite.signals.iter().any(|source| {
-        let ros2 = SignalMiddleware::Ros2;
-        matches!(&source.kind, DeclaredSourceKind::Topic { middleware, .. } if *middleware == ros2)
-    });
-    let has_clock = suite.clock.as_ref().is_some_and(|clock| clock.source == ClockSource::Ros2);
-    suite.fixtures.is_empty() && (has_topics || has_clock)
 }
 
 fn stem(path: &Path) -> String {

@@ -105,6 +105,8 @@ pub struct Isolation {
     /// Whether it gets a private network.
     pub network: bool,
     pub middleware: OwnMiddleware,
+    /// Whether it uses the user's YARP name server although its other middleware is private.
+    pub shares_name_server: bool,
     /// The names of its ports, sorted.
     pub ports: Vec<String>,
 }

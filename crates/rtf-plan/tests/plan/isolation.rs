@@ -10,7 +10,14 @@ fn bench() -> Bench {
     bench.file("cell/A.lua", "");
     bench.file("cell/F.lua", "");
     bench.file("share/rtf/fixtures/rtf_fixtures/ros2_signals.py", "");
-    for shipped in ["roscore.py", "rosbag.py", "clock.py", "rtf_fixtures/__init__.py"] {
+    for shipped in [
+        "roscore.py",
+        "rosbag.py",
+        "clock.py",
+        "yarpserver.py",
+        "yarpmanager.py",
+        "rtf_fixtures/__init__.py",
+    ] {
         bench.file(&format!("share/rtf/fixtures/{shipped}"), "");
     }
     bench.program("cell/sim", "exit 0");
@@ -45,6 +52,9 @@ fn which_suites_get_private_middleware() {
         ("", &format!("{plugin}{local}"), UnlessSet),
         ("", "<fixture>roscore</fixture>", UnlessSet),
         ("", "<fixture>rosbag</fixture>", Ros2UnlessSet),
+        ("", "<fixture>yarpmanager</fixture>", Ros2UnlessSet),
+        ("", "<fixture>yarpserver</fixture><fixture>yarpmanager</fixture>", UnlessSet),
+        ("middleware='own'", "<fixture>yarpmanager</fixture>", Always),
         ("", &format!("<fixture>roscore</fixture>{attached}"), No),
         ("middleware='own'", plugin, Always),
         ("", attached, No),
@@ -59,6 +69,27 @@ fn which_suites_get_private_middleware() {
         let isolation = isolation(attributes, inside);
         assert_eq!(isolation.middleware, expected, "{attributes} {inside}");
         assert_eq!(isolation.network, attributes.contains("network"));
+    }
+}
+
+/// Suites of 2.x with `yarpmanager` were given a private namespace, in which there is no server.
+#[test]
+fn which_suites_use_the_name_server_of_the_user() {
+    let manager = "<fixture>yarpmanager</fixture>";
+    let core = "<fixture>roscore</fixture>";
+    let server = "<fixture>yarpserver</fixture>";
+    let local = "<fixture type='process' name='l'><command>sh</command></fixture>";
+    for (attributes, inside, expected) in [
+        ("", format!("{core}{manager}"), true),
+        ("", format!("{core}{server}{manager}"), false),
+        // It may start a server.
+        ("", format!("{local}{manager}"), false),
+        ("", core.to_owned(), false),
+        ("middleware='own'", format!("{core}{manager}"), false),
+        ("isolate='network'", format!("{core}{manager}"), false),
+    ] {
+        let isolation = isolation(attributes, &inside);
+        assert_eq!(isolation.shares_name_server, expected, "{attributes} {inside}");
     }
 }
 
