@@ -14,8 +14,8 @@ public:
     void run() override
     {
         const std::string payload = std::getenv("RTF_PARAM_PAYLOAD");
-        std::ofstream("log", std::ios::app)
-            << getpid() << ' ' << std::getenv("RTF_EPISODE") << ' ' << payload << ' ' << param() << '\n';
+        std::ofstream("log", std::ios::app) << getpid() << ' ' << std::getenv("RTF_EPISODE") << ' '
+                                            << payload << ' ' << param() << '\n';
         if (payload == "9") {
             std::abort();
         }
