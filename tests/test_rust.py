@@ -43,5 +43,6 @@ def test_history_in_postgresql() -> None:
     """With a server, which the test starts and ends."""
     need_packages("postgresql")
     bin_dir = output_of("bash", "-c", "ls -d /usr/lib/postgresql/*/bin | sort -V | tail -n 1")
-    command = "cargo test --quiet --locked -p rtf-history --test postgres -- --ignored"
+    # All crates, although one is tested: with the features of all of them, nothing is built twice.
+    command = "cargo test --quiet --locked --workspace --test postgres -- --ignored"
     call(*command.split(), RTF_POSTGRES_BIN=bin_dir)

@@ -16,4 +16,5 @@ for library in libasan libubsan libtsan; do
   esac
 done
 
-cargo test --locked -p rtf --test e2e -- --ignored "${1:-conformance::checkers}"
+# All crates, although one is tested: with the features of all of them, as other tests build them.
+cargo test --locked --workspace --test e2e -- --ignored "${1:-conformance::checkers}"
