@@ -11,5 +11,5 @@ from checkout import call, venv
 
 @pytest.mark.parametrize(("script", "program"), [("warping", "warp"), ("pictures", "similarity")])
 def test_golden(request: pytest.FixtureRequest, script: str, program: str) -> None:
-    built = example(request.config, "rtf-golden", program)
+    built = example(request.config, program)
     call(venv("golden") / "python", Path(__file__).with_name(f"{script}.py"), built)

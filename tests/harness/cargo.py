@@ -6,8 +6,8 @@ import pytest
 from checkout import TARGET, call
 
 
-def example(config: pytest.Config, package: str, name: str) -> str:
-    """The path of an example, which is built first."""
+def example(config: pytest.Config, name: str) -> str:
+    """The path of an example, which is built first, with the features of the whole workspace."""
     if not config.getoption("no_build"):
-        call("cargo", "build", "--quiet", "--locked", "-p", package, "--example", name)
+        call("cargo", "build", "--quiet", "--locked", "--workspace", "--example", name)
     return str(TARGET / "debug/examples" / name)

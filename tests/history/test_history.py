@@ -13,6 +13,6 @@ from checkout import ROOT, call, venv
 def test_change_points(request: pytest.FixtureRequest, expected: str) -> None:
     """Without the dependencies of the packages: see tools/requirements-history.txt."""
     python = venv("history", PIP_NO_DEPS="1") / "python"
-    program = example(request.config, "rtf-history", "change_points")
+    program = example(request.config, "change_points")
     script = Path(__file__).with_name("change_points.py")
     call(python, script, program, expected, PYTHONPATH=str(ROOT / "tests/harness"))

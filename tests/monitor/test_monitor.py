@@ -12,7 +12,7 @@ from checkout import call, venv
 @pytest.fixture(scope="module")
 def program(request: pytest.FixtureRequest) -> str:
     """The example that judges formulas."""
-    return example(request.config, "rtf-monitor", "robustness")
+    return example(request.config, "robustness")
 
 
 @pytest.mark.parametrize("judge", ["reference", "dense", "discrete"])
