@@ -76,6 +76,8 @@ def main() -> None:
 def build() -> Path:
     """Compiles the targets. Only the workspace's own libraries have counters."""
     environment = {**os.environ, "RUSTC_WORKSPACE_WRAPPER": str(ROOT / "tools" / "fuzz_rustc.sh")}
+    # A cache of compilers does not know this one.
+    environment.pop("RUSTC_WRAPPER", None)
     # These packages, because the features of libraries are then those of tools/build.sh.
     command = ["cargo", "build", "--workspace", "--exclude", "xtask", "--locked", "--release"]
     command += ["--bin", "fuzz"]

@@ -1,7 +1,9 @@
 """Tests with all kinds of results, on a motor that runs and a homing that ends."""
 
 import sys
+import tempfile
 import unittest
+from pathlib import Path
 
 import launch
 import launch_testing
@@ -17,14 +19,22 @@ print("motor", sys.argv[1], "is on", flush=True)
 time.sleep(1000)
 """
 
+HOMING = """
+trap 'exit 3' INT
+until [ -e "$1" ]; do sleep 0.05; done
+echo no encoder >&2
+exit 3
+"""
+
 
 def generate_test_description():
     """Starts both."""
     motor = ExecuteProcess(cmd=[sys.executable, "-c", MOTOR, LaunchConfiguration("side")])
-    homing = ExecuteProcess(cmd=["sh", "-c", "sleep 0.3; echo no encoder >&2; exit 3"])
+    end = Path(tempfile.mkdtemp()) / "end"
+    homing = ExecuteProcess(cmd=["sh", "-c", HOMING, "sh", str(end)])
     argument = DeclareLaunchArgument("side", default_value="left")
     description = launch.LaunchDescription([argument, motor, homing, ReadyToTest()])
-    return description, {"motor": motor, "homing": homing}
+    return description, {"motor": motor, "homing": homing, "end": end}
 
 
 class TestArm(unittest.TestCase):
@@ -34,8 +44,9 @@ class TestArm(unittest.TestCase):
         """Passes."""
         proc_output.assertWaitFor("motor right is on", timeout=10, stream="stdout")
 
-    def test_2_homing_ends(self, proc_info, homing):
+    def test_2_homing_ends(self, proc_info, homing, end):
         """Passes, although a process ends with an error."""
+        end.touch()
         proc_info.assertWaitForShutdown(process=homing, timeout=10)
         self.assertEqual(proc_info[homing].returncode, 3)
 

@@ -32,10 +32,10 @@ pub fn write(out: &mut dyn Write, record: &Record, folder: Option<&Path>) -> io:
     write_with(out, record, folder, &AsPlanned)
 }
 
-/// As [`write`], with the names and the output of another runner.
+/// As [`write()`], with the names and the output of another runner.
 ///
 /// # Errors
-/// As for [`write`].
+/// As for [`write()`].
 pub(crate) fn write_with(
     out: &mut dyn Write,
     record: &Record,

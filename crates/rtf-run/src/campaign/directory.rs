@@ -15,6 +15,8 @@ use std::collections::BTreeSet;
 use std::fs::{self, File, TryLockError};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use rtf_campaign::EpisodeList;
 use rtf_cluster::Cluster;
@@ -34,6 +36,10 @@ const EPISODES: &str = "episodes.jsonl";
 const RESULTS: &str = "results.jsonl";
 const WORKERS: &str = "workers";
 const LIST: &str = "list.jsonl";
+/// How long a lock is waited for: a process that was killed may have a child that does not execute
+/// its program yet, and has the lock, too.
+const LOCK_WAIT: Duration = Duration::from_secs(2);
+const LOCK_POLL: Duration = Duration::from_millis(20);
 
 /// What a campaign runs. Paths are absolute.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -124,13 +130,18 @@ impl CampaignDir {
     pub fn lock(&self) -> Result<File, Failure> {
         let path = self.path.join(DESCRIPTION);
         let file = File::open(&path).map_err(|error| unwritable(&path, &error))?;
-        match file.try_lock() {
-            Ok(()) => Ok(file),
-            Err(TryLockError::WouldBlock) => {
-                let error = format!("the campaign in `{}` is still running", self.path.display());
-                Err(Failure::input(error).hint("wait until it has ended"))
+        let end = Instant::now() + LOCK_WAIT;
+        loop {
+            match file.try_lock() {
+                Ok(()) => return Ok(file),
+                Err(TryLockError::WouldBlock) if Instant::now() < end => thread::sleep(LOCK_POLL),
+                Err(TryLockError::WouldBlock) => {
+                    let error =
+                        format!("the campaign in `{}` is still running", self.path.display());
+                    return Err(Failure::input(error).hint("wait until it has ended"));
+                }
+                Err(TryLockError::Error(error)) => return Err(unwritable(&path, &error)),
             }
-            Err(TryLockError::Error(error)) => Err(unwritable(&path, &error)),
         }
     }
 

@@ -48,26 +48,14 @@ def starts(runs: list[Any]) -> Iterator[dict[str, object]]:
 
 def is_successful(runs: list[Any], arguments: list[str], reporter: Reporter | None = None) -> bool:
     """Run launches one after the other, and whether all tests passed."""
-    runner = test_runner.LaunchTestRunner
     if reporter is not None:
-        runner = _observed(runner, reporter)
         test_runner.TestResult = _forwarding(test_runner.TestResult, reporter)
         _make_stoppable()
-    results = runner(runs, arguments).run()
+    results = test_runner.LaunchTestRunner(runs, arguments).run()
     if reporter is not None:
         for run, result in results.items():
             reporter.finish_run(run, result)
     return all(result.wasSuccessful() for result in results.values())
-
-
-def _observed(base: type[Any], reporter: Reporter) -> type[Any]:
-    """Return launch_testing's runner, whose launches report how processes end."""
-
-    class Runner(base):  # type: ignore[misc]
-        def generate_preamble(self) -> list[Any]:
-            return [*super().generate_preamble(), *reporter.handlers()]
-
-    return Runner
 
 
 def _forwarding(base: type[Any], reporter: Reporter) -> type[Any]:

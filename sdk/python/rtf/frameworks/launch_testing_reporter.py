@@ -64,13 +64,6 @@ class Reporter(unittest_result.Reporter):
                 unittest_tests.retain(suite, lambda test: selected[case_name(test)])
         return [run for run in runs if any(True for _ in run.all_cases())]
 
-    def handlers(self) -> list[Any]:
-        """Return what observes the processes of a launch."""
-        return [
-            RegisterEventHandler(OnProcessExit(on_exit=self._on_exit)),
-            RegisterEventHandler(OnProcessIO(on_stdout=self._on_output, on_stderr=self._on_output)),
-        ]
-
     def is_stopped(self) -> bool:
         """Whether the runner stops the test."""
         return self._stop.is_requested
@@ -138,9 +131,20 @@ class Reporter(unittest_result.Reporter):
 
             self._launched, self._is_ready = time.monotonic(), False
             self._exits.clear()
-            return describe(ready_fn=ready)
+            description, objects = describe(ready_fn=ready)
+            # launch calls the newest handlers first, so these before those of launch_testing,
+            # which let a test continue that waits for the end of a process.
+            description.entities[:0] = self._handlers()
+            return description, objects
 
         return described
+
+    def _handlers(self) -> list[Any]:
+        """Return what observes the processes of a launch."""
+        return [
+            RegisterEventHandler(OnProcessExit(on_exit=self._on_exit)),
+            RegisterEventHandler(OnProcessIO(on_stdout=self._on_output, on_stderr=self._on_output)),
+        ]
 
     def _on_output(self, event: Any) -> None:
         if self._running is not None:

@@ -45,8 +45,8 @@ class RegisterEventHandler:
         self._handler = handler
 
     def execute(self, context: Any) -> None:
-        """Registers it."""
-        context.handlers.append(self._handler)
+        """Registers it: the newest one is called first, as by the real launch."""
+        context.handlers.insert(0, self._handler)
 
 
 class Shutdown:

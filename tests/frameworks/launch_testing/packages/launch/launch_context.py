@@ -35,7 +35,7 @@ class LaunchContext:
 
     def emit(self, event: object) -> None:
         """Passes an event to its handlers, and executes the actions that these return."""
-        for handler in self.handlers:
+        for handler in list(self.handlers):
             action = handler(event, self)
             if action is not None:
                 self.execute(action)
