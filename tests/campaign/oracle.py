@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import two_versions
 from scipy import optimize, special, stats
 from scipy.stats import qmc
 
@@ -40,6 +41,7 @@ def main() -> int:
         "confidence_sequence": confidence_sequence(),
         "mcnemar": mcnemar(),
         "permutation": permutation(),
+        **two_versions.results(),
         "random": random(),
         "sobol": sobol(),
     }

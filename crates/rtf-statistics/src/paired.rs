@@ -6,10 +6,10 @@ use statrs::function::beta::checked_beta_reg;
 use crate::RandomStream;
 
 /// Up to this number of differences other than zero, all signs are tried.
-const MAX_EXACT: usize = 16;
+pub(crate) const MAX_EXACT: usize = 16;
 
 /// The number of random signs otherwise.
-const RESAMPLES: u32 = 9999;
+pub(crate) const RESAMPLES: u32 = 9999;
 
 /// Sums are equal if they differ by less than this part: rounding errors.
 const RESOLUTION: f64 = 1e-13;

@@ -56,6 +56,13 @@ pub fn unit(bits: u64) -> f64 {
     (((bits >> 12) << 1) | 1) as f64 * HALF_STEP
 }
 
+/// An index below `count` from random bits: the bias is below `count`/2⁶⁴.
+#[must_use]
+pub fn index_below(bits: u64, count: usize) -> usize {
+    let index = (u128::from(bits) * count as u128) >> 64;
+    usize::try_from(index).unwrap_or_default()
+}
+
 /// The quantile of the standard normal distribution for a probability between 0 and 1.
 ///
 /// Source: M. J. Wichura, "Algorithm AS 241: The percentage points of the normal distribution",

@@ -119,7 +119,7 @@ fn confidence_sequence_table() -> String {
 }
 
 #[track_caller]
-fn assert_documented(table: &str) {
+pub fn assert_documented(table: &str) {
     let page = include_str!("../../../../docs/explanation/campaign-statistics.md");
     assert!(page.contains(table), "the page does not contain:\n{table}");
 }

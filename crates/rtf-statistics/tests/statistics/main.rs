@@ -8,6 +8,7 @@
 )]
 
 mod binomial;
+mod comparisons;
 mod documented;
 mod error_rates;
 mod scipy;

@@ -2,7 +2,9 @@
 
 use rtf_statistics::paired::{mcnemar, permutation_test};
 use rtf_statistics::random::normal_quantile;
-use rtf_statistics::{ConfidenceSequence, RandomStream, exact_rate, rate};
+use rtf_statistics::sample_size::{independent_power, paired_power};
+use rtf_statistics::{ConfidenceSequence, Counts, Difference, PairCounts, RandomStream};
+use rtf_statistics::{difference, exact_rate, holm, independent, rate};
 use serde_json::Value;
 
 /// The rows with results of one kind.
@@ -92,5 +94,75 @@ fn random_numbers() {
         let mut stream =
             RandomStream::new(seed, row[1].as_str().unwrap(), row[2].as_str().unwrap());
         assert_eq!(stream.bits(index).to_string(), row[4].as_str().unwrap());
+    }
+}
+
+fn counts(successes: f64, trials: f64) -> Counts {
+    Counts { successes: count(successes), trials: count(trials) }
+}
+
+#[track_caller]
+fn assert_interval(found: Option<Difference>, low: f64, high: f64, relative: f64) {
+    let found = found.unwrap();
+    assert!((found.low - low).abs() <= relative, "{found:?} != {low} to {high}");
+    assert!((found.high - high).abs() <= relative, "{found:?} != {low} to {high}");
+}
+
+#[test]
+fn fishers_test() {
+    for [first, trials, second, others, p_value] in numbers("fisher") {
+        let found = independent::fisher(counts(first, trials), counts(second, others));
+        assert_near(found, p_value, 1e-9);
+    }
+}
+
+#[test]
+fn differences_of_rates() {
+    for [first, trials, second, others, low, high] in numbers("difference") {
+        let (first, second) = (counts(first, trials), counts(second, others));
+        assert_interval(difference::of_rates(first, second, 0.95), low, high, 1e-9);
+    }
+    for [both, first, second, none, low, high] in numbers("paired_difference") {
+        let [both_passed, only_first, only_second, none_passed] =
+            [both, first, second, none].map(count);
+        let pairs = PairCounts { both_passed, only_first, only_second, none_passed };
+        assert_interval(difference::of_paired_rates(&pairs, 0.95), low, high, 1e-9);
+    }
+}
+
+#[test]
+fn differences_of_means_and_their_permutations() {
+    let values = |cell: &Value| -> Vec<f64> { serde_json::from_value(cell.clone()).unwrap() };
+    let number = |cell: &Value| cell.as_f64().unwrap();
+    for row in rows("paired_means") {
+        let found = difference::of_paired_means(&values(&row[0]), 0.95);
+        assert_interval(found, number(&row[1]), number(&row[2]), 1e-9);
+    }
+    for row in rows("means") {
+        let (first, second) = (values(&row[0]), values(&row[1]));
+        let found = difference::of_means(&first, &second, 0.95);
+        assert_interval(found, number(&row[2]), number(&row[3]), 1e-9);
+        let p_value = independent::permutation_test(&first, &second, 0);
+        assert_near(p_value, number(&row[4]), 1e-12);
+    }
+}
+
+#[test]
+fn adjusted_p_values() {
+    for row in rows("holm") {
+        let [p_values, adjusted]: [Vec<f64>; 2] = serde_json::from_value(row).unwrap();
+        for (found, expected) in holm(&p_values).into_iter().zip(adjusted) {
+            assert_near(found, expected, 1e-12);
+        }
+    }
+}
+
+#[test]
+fn powers_of_comparisons() {
+    for [pairs, better, worse, alpha, power] in numbers("paired_power") {
+        assert_near(paired_power(count(pairs), better, worse, alpha), power, 1e-8);
+    }
+    for [trials, better, worse, alpha, power] in numbers("independent_power") {
+        assert_near(independent_power(count(trials), better, worse, alpha), power, 1e-8);
     }
 }
