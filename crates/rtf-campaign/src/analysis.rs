@@ -1,18 +1,14 @@
 //! Where a campaign fails: rates by the values of one or two parameters, and which parameters
 //! matter.
 
-use std::collections::BTreeMap;
-
 use rtf_model::{Episode, Parameter};
-use rtf_statistics::{CONFIDENCE, RandomStream, Rate, rate, strata};
+use rtf_statistics::random::index_below;
+use rtf_statistics::{CONFIDENCE, RandomStream, Rate, rate};
 use serde::Serialize;
 
-use crate::episodes::sampler::number_of;
+use crate::axis::Axis;
 use crate::{EpisodeResult, Ledger};
 
-/// A parameter with more different numbers is divided into bins.
-const MAX_WORDS: usize = 8;
-const BINS: usize = 6;
 const PERMUTATIONS: u32 = 999;
 
 /// An episode and whether it passed.
@@ -77,18 +73,14 @@ pub fn by_parameters(samples: &[Sample<'_>], seed: u64) -> Vec<ByParameter> {
 }
 
 fn by_parameter(samples: &[Sample<'_>], name: &str, seed: u64) -> ByParameter {
-    let axis = Axis::new(samples, name);
-    let places: Vec<usize> = samples.iter().map(|(episode, _)| axis.place(episode)).collect();
+    let (axis, places) = places(samples, name);
     let mut results: Vec<bool> = samples.iter().map(|(_, passed)| *passed).collect();
     let chi_square = chi_square(&places, &results, axis.labels.len());
     let mut random = RandomStream::new(seed, "permutation-of-results", name).sequence();
     let mut as_large = 0_u32;
     for _ in 0..PERMUTATIONS {
         for index in (1..results.len()).rev() {
-            // The range is at most the number of episodes: the bias is below 2^-40.
-            let drawn = u128::from(random.next().unwrap_or_default());
-            let other = (drawn * (index as u128 + 1)) >> 64;
-            results.swap(index, usize::try_from(other).unwrap_or(index));
+            results.swap(index, index_below(random.next().unwrap_or_default(), index + 1));
         }
         let permuted = self::chi_square(&places, &results, axis.labels.len());
         as_large += u32::from(permuted >= chi_square * (1.0 - 1e-12));
@@ -110,10 +102,10 @@ pub fn failure_map(samples: &[Sample<'_>], x: &str, y: &str) -> Option<FailureMa
         episode.parameters.iter().any(|parameter| parameter.name == name).then_some(())
     };
     known(x).and(known(y))?;
-    let (columns, rows) = (Axis::new(samples, x), Axis::new(samples, y));
+    let ((columns, columns_of), (rows, rows_of)) = (places(samples, x), places(samples, y));
     let mut counts = vec![vec![(0, 0); columns.labels.len()]; rows.labels.len()];
-    for (episode, passed) in samples {
-        let (all, green) = &mut counts[rows.place(episode)][columns.place(episode)];
+    for ((_, passed), (row, column)) in samples.iter().zip(rows_of.iter().zip(&columns_of)) {
+        let (all, green) = &mut counts[*row][*column];
         *all += 1;
         *green += usize::from(*passed);
     }
@@ -123,6 +115,21 @@ pub fn failure_map(samples: &[Sample<'_>], x: &str, y: &str) -> Option<FailureMa
     };
     let rows = rows.labels.clone().into_iter().zip(counts).map(row).collect();
     Some(FailureMap { rows, columns: columns.labels })
+}
+
+/// The values of a parameter, and the place of each episode among them.
+fn places(samples: &[Sample<'_>], name: &str) -> (Axis, Vec<usize>) {
+    let values = samples.iter().map(|(episode, _)| value(&episode.parameters, name));
+    let values: Vec<&str> = values.map(Option::unwrap_or_default).collect();
+    let axis = Axis::new(&values);
+    let places = values.iter().map(|text| axis.place(text)).collect();
+    (axis, places)
+}
+
+/// The value of a parameter.
+pub(crate) fn value<'a>(parameters: &'a [Parameter], name: &str) -> Option<&'a str> {
+    let is_named = |parameter: &&Parameter| parameter.name == name;
+    parameters.iter().find(is_named).map(|parameter| parameter.value.as_str())
 }
 
 fn cell(values: String, episodes: usize, passed: usize) -> Cell {
@@ -144,79 +151,6 @@ fn chi_square(places: &[usize], results: &[bool], cells: usize) -> f64 {
         (green - all * total).powi(2) / (all * total * (1.0 - total))
     };
     counts.iter().filter(|(all, _)| *all > 0).map(term).filter(|it| it.is_finite()).sum()
-}
-
-/// The values of a parameter: words, or ranges of numbers.
-struct Axis {
-    name: String,
-    labels: Vec<String>,
-    /// The upper ends of the ranges but the last; `None` for words.
-    ends: Option<Vec<f64>>,
-}
-
-impl Axis {
-    fn new(samples: &[Sample<'_>], name: &str) -> Self {
-        let values: Vec<&str> = samples.iter().filter_map(|(it, _)| value(it, name)).collect();
-        let numbers: Option<Vec<f64>> = values.iter().map(|text| number_of(text)).collect();
-        let words: BTreeMap<_, _> = values.iter().map(|text| (sort_key(text), *text)).collect();
-        match numbers {
-            Some(numbers) if words.len() > MAX_WORDS => {
-                let numbers: Vec<_> = numbers.into_iter().map(|number| (number, true)).collect();
-                let bins = strata(&numbers, BINS, CONFIDENCE);
-                let label = |low: f64, high: f64| format!("{} to {}", short(low), short(high));
-                Self {
-                    name: name.to_owned(),
-                    labels: bins.iter().map(|bin| label(bin.low, bin.high)).collect(),
-                    ends: Some(bins.iter().skip(1).map(|bin| bin.low).collect()),
-                }
-            }
-            _ => {
-                let labels = words.into_values().map(str::to_owned).collect();
-                Self { name: name.to_owned(), labels, ends: None }
-            }
-        }
-    }
-
-    fn place(&self, episode: &Episode) -> usize {
-        let text = value(episode, &self.name).unwrap_or_default();
-        match &self.ends {
-            Some(ends) => {
-                let number = number_of(text).unwrap_or_default();
-                ends.partition_point(|end| *end <= number)
-            }
-            None => self.labels.iter().position(|label| label == text).unwrap_or_default(),
-        }
-    }
-}
-
-fn value<'a>(episode: &'a Episode, name: &str) -> Option<&'a str> {
-    let is_named = |parameter: &&Parameter| parameter.name == name;
-    episode.parameters.iter().find(is_named).map(|parameter| parameter.value.as_str())
-}
-
-/// Numbers in their order, then words.
-fn sort_key(text: &str) -> (bool, u64, &str) {
-    match number_of(text) {
-        Some(number) => {
-            let bits = number.to_bits();
-            let ordered = if number.is_sign_negative() { !bits } else { bits | (1 << 63) };
-            (false, ordered, text)
-        }
-        None => (true, 0, text),
-    }
-}
-
-/// A number with three significant digits.
-fn short(number: f64) -> String {
-    if number == 0.0 {
-        return "0".to_owned();
-    }
-    let digits = 2 - number.abs().log10().floor() as i32;
-    let text = format!("{number:.*}", usize::try_from(digits.clamp(0, 12)).unwrap_or_default());
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
-    }
 }
 
 #[cfg(test)]
@@ -274,11 +208,5 @@ mod tests {
         let found = by_parameters(&passed, 7);
         assert!(found.iter().all(|it| it.chi_square == 0.0 && it.p_value == 1.0), "{found:?}");
         assert!(by_parameters(&[], 7).is_empty());
-    }
-
-    #[test]
-    fn numbers_are_short() {
-        let texts = [0.0, 0.166_666, 1.0, 12.345, 1234.5, -0.000_123_4].map(short);
-        assert_eq!(texts, ["0", "0.167", "1", "12.3", "1234", "-0.000123"]);
     }
 }

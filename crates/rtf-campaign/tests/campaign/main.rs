@@ -1,10 +1,17 @@
 //! Campaign files → episodes: golden lists, properties, problems with their positions, the
 //! schema, and judgements.
 
-#![expect(clippy::unwrap_used, clippy::expect_used, reason = "that is where a test ends")]
+#![expect(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::cast_precision_loss,
+    reason = "a test ends there; counts are far below 2^53"
+)]
 
+mod comparisons;
 mod golden;
 mod judgements;
+mod made_comparisons;
 mod problems;
 mod properties;
 mod schema;

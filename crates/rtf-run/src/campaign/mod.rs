@@ -6,6 +6,7 @@ pub mod judged;
 pub mod report;
 pub mod start;
 mod stream;
+pub mod version;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -21,8 +21,10 @@ pub enum CampaignVerb {
     Shrink(CampaignShrinkArgs),
     /// Run episodes that another program asks for on standard input, such as an optimiser
     Search(CampaignSearchArgs),
-    /// Compare two versions on the same episodes
+    /// Compare versions with the first one: the rates, by condition, and measurements
     Compare(CampaignCompareArgs),
+    /// Print how many episodes a comparison needs to find a difference
+    Plan(CampaignPlanArgs),
     /// Print the list of episodes, as JSON lines
     Episodes {
         /// The campaign (.xml)
@@ -165,17 +167,59 @@ pub struct CampaignSearchArgs {
 /// Options of `rtf campaign compare`.
 #[derive(Debug, Args)]
 pub struct CampaignCompareArgs {
-    /// The directory of the results of the first version
+    /// The results of the first version: the directory of a campaign, a CSV file, or
+    /// `eval_info.json` of LeRobot
     #[arg(value_name = "FIRST")]
     pub first: PathBuf,
 
-    /// The directory of the results of the second version
-    #[arg(value_name = "SECOND")]
-    pub second: PathBuf,
+    /// The results of the versions that are compared with it
+    #[arg(value_name = "NEXT", required = true)]
+    pub next: Vec<PathBuf>,
 
-    /// The probability of the exit code 1 if both versions are equal
+    /// Also compare the versions for each value of a parameter
+    #[arg(long, value_name = "PARAM")]
+    pub by: Option<String>,
+
+    /// The probability of any wrong claim if all versions are equal
     #[arg(long, value_name = "P", default_value = "0.05", value_parser = parse_probability)]
     pub alpha: f64,
+
+    /// Output format
+    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    pub format: CampaignFormat,
+}
+
+/// Options of `rtf campaign plan`.
+#[derive(Debug, Args)]
+pub struct CampaignPlanArgs {
+    /// Results with the rate of the first version, as for `rtf campaign compare`
+    #[arg(value_name = "RESULTS", required_unless_present = "rate", conflicts_with = "rate")]
+    pub results: Option<PathBuf>,
+
+    /// The difference of the rates to be found, in percentage points: `5%`
+    #[arg(long, value_name = "PERCENT", value_parser = parse_percent)]
+    pub detect: f64,
+
+    /// The rate of the first version: `0.9` or `90%`
+    #[arg(long, value_name = "RATE", value_parser = parse_rate)]
+    pub rate: Option<f64>,
+
+    /// The probability that the difference is found
+    #[arg(long, value_name = "P", default_value = "0.8", value_parser = parse_probability)]
+    pub power: f64,
+
+    /// The probability of any wrong claim if all versions are equal
+    #[arg(long, value_name = "P", default_value = "0.05", value_parser = parse_probability)]
+    pub alpha: f64,
+
+    /// The share of episodes that only one of two versions passes: `10%` [default: unknown]
+    #[arg(long, value_name = "PERCENT", value_parser = parse_percent)]
+    pub discordant: Option<f64>,
+
+    /// How many versions are compared, with the first one
+    #[arg(long, value_name = "N", default_value = "2")]
+    #[arg(value_parser = clap::value_parser!(u32).range(2..=1000))]
+    pub versions: u32,
 
     /// Output format
     #[arg(long, value_name = "FORMAT", default_value = "text")]
@@ -186,5 +230,26 @@ fn parse_probability(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(number) if number > 0.0 && number < 1.0 => Ok(number),
         _ => Err("a number between 0 and 1 is expected".to_owned()),
+    }
+}
+
+/// A share above 0 %, in percent.
+fn parse_percent(text: &str) -> Result<f64, String> {
+    let number = text.strip_suffix('%').and_then(|number| number.trim_end().parse::<f64>().ok());
+    match number {
+        Some(number) if number > 0.0 && number <= 100.0 => Ok(number / 100.0),
+        _ => Err("a number of percent above 0 and up to 100 is expected: `5%`".to_owned()),
+    }
+}
+
+/// A rate, as a number or in percent.
+fn parse_rate(text: &str) -> Result<f64, String> {
+    let number = match text.strip_suffix('%') {
+        Some(percent) => percent.trim_end().parse().map(|number: f64| number / 100.0),
+        None => text.parse(),
+    };
+    match number {
+        Ok(number) if (0.0..=1.0).contains(&number) => Ok(number),
+        _ => Err("a number from 0 to 1 is expected, or percent: `0.9` or `90%`".to_owned()),
     }
 }

@@ -43,7 +43,7 @@ pub fn results(folder: &Folder) -> Vec<EpisodeLine> {
 }
 
 /// The output without the times of the name of the directory.
-fn shown(folder: &Folder, finished: &Finished) -> String {
+pub fn shown(folder: &Folder, finished: &Finished) -> String {
     let name = Regex::new(r"campaigns/[0-9TZ-]+-[0-9a-f]+").expect("a pattern");
     name.replace_all(&folder.shown(finished), "campaigns/[NAME]").into_owned()
 }
@@ -289,53 +289,6 @@ fn the_results_show_where_a_campaign_fails() {
     error: the campaign has no parameters `payload` and `colour`
     hint: its parameters are `payload`, `surface`
     ");
-}
-
-/// The results of a campaign in `grasp.xml`, in a directory.
-fn version(folder: &Folder, limit: u32) -> String {
-    let test = format!(
-        "TestCase = {{}}\nfunction TestCase.run()\n  \
-         local payload = tonumber(os.getenv('RTF_PARAM_PAYLOAD'))\n  \
-         rtf.measure('sag', payload / {limit}, 'rad')\n  rtf.check(payload < {limit}, 'no')\nend\n"
-    );
-    folder.file("Grasp.lua", &test);
-    run(folder, &[]);
-    let newest = folder.path().join("rtf-results/campaigns/latest");
-    newest.canonicalize().expect("results").to_string_lossy().into_owned()
-}
-
-#[test]
-fn two_versions_are_compared_on_the_same_episodes() {
-    let folder = folder(SUITE, &fixed(30, "0.5"));
-    let (good, bad) = (version(&folder, 2), version(&folder, 1));
-    let worse = folder.rtf(&["campaign", "compare", &good, &bad]);
-    assert_eq!(worse.code, Some(1), "{}{}", worse.stdout, worse.stderr);
-    let text = shown(&folder, &worse);
-    let begin = text.find("30 episodes").expect("the comparison");
-    assert_snapshot!(text[begin..], @"
-    30 episodes with a result in both
-      passed in both        17
-      only in the first     10
-      only in the second    0
-      in neither            3
-      p = 0.0020 (McNemar)
-
-    measurements, means of the pairs
-      Grasp sag  0.477595 → 0.955191 rad  p = 0.0001  (30 pairs)
-    ----- stderr
-    ");
-    assert_eq!(folder.rtf(&["campaign", "compare", &bad, &good]).code, Some(0), "it is better");
-    assert_eq!(folder.rtf(&["campaign", "compare", &good, &good]).code, Some(0));
-    folder.file(
-        "campaign.xml",
-        "<campaign suite='grasp.xml' episodes='3'>\
-        <parameter name='payload' distribution='uniform' low='0' high='1'/>\
-        <claim require='rate >= 0.5' confidence='0.6'/></campaign>",
-    );
-    let other = version(&folder, 2);
-    let refused = folder.rtf(&["campaign", "compare", &good, &other]);
-    assert_eq!(refused.code, Some(2));
-    assert!(refused.stderr.contains("have different episodes"), "{}", refused.stderr);
 }
 
 #[test]

@@ -100,7 +100,8 @@ fn every_option() {
     };
     let mut verbs = found(r"(?m)^  ([a-z-]+)  ", &help(""));
     verbs.extend(
-        ["config show", "campaign run", "campaign show", "campaign compare"].map(str::to_owned),
+        ["config show", "campaign run", "campaign show", "campaign compare", "campaign plan"]
+            .map(str::to_owned),
     );
     let questions = found(r"(?m)^  ([a-z-]+)  ", &help("history"));
     verbs.extend(questions.iter().map(|question| format!("history {question}")));

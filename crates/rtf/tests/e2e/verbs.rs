@@ -316,11 +316,12 @@ fn bash_reads_its_completions() {
 }
 
 /// The verbs with a page of the manual, in its order.
-const VERBS: [&str; 46] = [
+const VERBS: [&str; 47] = [
     "ada-dir",
     "ament-dir",
     "campaign-compare",
     "campaign-episodes",
+    "campaign-plan",
     "campaign-run",
     "campaign-search",
     "campaign-show",

@@ -1,6 +1,8 @@
 //! `rtf campaign`.
 
 mod compare;
+mod comparison_text;
+mod plan;
 mod run;
 mod search;
 mod show;
@@ -21,6 +23,7 @@ pub fn run(verb: CampaignVerb, matches: &ArgMatches) -> VerbResult {
     match verb {
         CampaignVerb::Run(args) => run::run(*args, verb_matches),
         CampaignVerb::Compare(args) => compare::run(&args),
+        CampaignVerb::Plan(args) => plan::run(&args),
         CampaignVerb::Search(args) => search::run(args, verb_matches),
         CampaignVerb::Shrink(args) => shrink::run(args, verb_matches),
         CampaignVerb::Show(args) => show::run(&args, verb_matches),
