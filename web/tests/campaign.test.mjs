@@ -15,6 +15,7 @@ const LUA = `TestCase = {}
 function TestCase.run()
   local payload = tonumber(os.getenv('RTF_PARAM_PAYLOAD'))
   print('payload ' .. os.getenv('RTF_PARAM_PAYLOAD'))
+  rtf.measure('sag', payload / 2, 'rad')
   rtf.check(payload < 1.5, 'too heavy for ${SCRIPT}')
 end
 `;
@@ -172,6 +173,37 @@ test('a failed episode opens its run, at the test that failed', () =>
         await guarded.see(`payload ${payload}`, '#detail');
         await page.getByRole('link', { name: 'its campaign' }).click();
         await guarded.see('Campaign', 'h1');
+    }));
+
+test('the worst episodes are next to the best ones, and open their runs', () =>
+    views(async (guarded, where) => {
+        const { page } = guarded;
+        const rows = (name) => page.getByRole('region', { name, exact: true }).locator('tbody tr');
+        await page.getByRole('combobox', { name: /^By\b/ }).selectOption('Grasp sag (rad)');
+        const payloads = async (label) => {
+            const texts = await rows(label).allInnerTexts();
+            return texts.map((text) => Number(/payload=([0-9.]+)/.exec(text)[1]));
+        };
+        const [worst, best] = [await payloads('Worst episodes'), await payloads('Best episodes')];
+        assert.equal(worst.length, 5, where);
+        assert.ok(Math.min(...worst) >= 1.5, 'failed with the largest payloads');
+        assert.deepEqual(
+            worst,
+            worst.toSorted((a, b) => b - a),
+        );
+        assert.deepEqual(
+            best,
+            best.toSorted((a, b) => a - b),
+        );
+        assert.ok(Math.max(...best) < worst.at(-1));
+        if (where === 'file') {
+            assert.equal(await rows('Best episodes').getByRole('link').count(), 0);
+            return;
+        }
+        // A passed episode opens at the attempt of its test, too.
+        await rows('Best episodes').first().getByRole('link').click();
+        await guarded.see(`payload ${best[0]}`, '#detail');
+        await guarded.see('sag', '#detail');
     }));
 
 test('axe finds nothing serious, in both themes', async () => {

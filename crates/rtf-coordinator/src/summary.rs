@@ -146,7 +146,7 @@ pub fn result_lines(ledger: &Ledger, recorded: Vec<EpisodeLine>) -> Vec<EpisodeL
             && (&known.outcome, &known.reason) == (&line.outcome, &line.reason)
         {
             // Which run of a worker it was depends on the number of workers.
-            *known = EpisodeLine { problem: None, ..line };
+            *known = EpisodeLine { problem: None, shown: None, ..line };
         }
     }
     lines.into_values().collect()

@@ -61,7 +61,7 @@ pub use question::{AnswerChannel, Question, QuestionAsked, QuestionClosed, Respo
 pub use record::{
     AttemptCases, AttemptCounts, AttemptRecord, CaseRecord, EpisodeOutcome, EpisodeRecord,
     FixtureLife, FixtureRecord, FixtureState, HookRecord, HookRunRecord, HostRecord, PlannedCases,
-    ProblemTest, QuestionRecord, Record, RunState, SignalSummary, SuiteRecord, TestRecord,
+    QuestionRecord, Record, RunState, SignalSummary, SuiteRecord, TestAttempt, TestRecord,
     TestTotals,
 };
 pub use report::{

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use rtf_model::{EpisodeOutcome, EpisodeRecord, Event, EventKind, ProblemTest, Record, SuiteId};
+use rtf_model::{EpisodeOutcome, EpisodeRecord, Event, EventKind, Record, SuiteId, TestAttempt};
 use serde::{Deserialize, Serialize};
 
 use crate::{ReportError, Reporter};
@@ -25,7 +25,10 @@ pub struct EpisodeLine {
     pub reason: Option<String>,
     /// The test that did not pass, if it was one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub problem: Option<ProblemTest>,
+    pub problem: Option<TestAttempt>,
+    /// The test that shows it, if it passed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shown: Option<TestAttempt>,
     /// From its start to its end, in microseconds.
     #[serde(default)]
     pub duration_us: u64,
@@ -99,6 +102,7 @@ fn last(record: &Record, suite: SuiteId) -> Option<EpisodeLine> {
         outcome: Some(outcome),
         reason,
         problem: record.episode_problem(suite).filter(|_| outcome != EpisodeOutcome::Passed),
+        shown: record.episode_shown(suite).filter(|_| outcome == EpisodeOutcome::Passed),
         duration_us: finished.0.saturating_sub(episode.started.0),
         measurements: measurements(record, suite),
     })

@@ -66,6 +66,9 @@ pub struct CampaignReport {
     pub parameters: Vec<CampaignParameter>,
     /// The rates by two parameters, of the parameters with the largest effects.
     pub maps: Vec<CampaignMap>,
+    /// The worst episodes and the best ones, by duration and by measurements. Empty if fewer than
+    /// two episodes have a result.
+    pub rankings: Vec<EpisodeRanking>,
     /// The first episodes whose last result is not `passed`.
     pub problems: Vec<EpisodeProblem>,
     /// The number of all these episodes.
@@ -147,12 +150,44 @@ pub struct EpisodeProblem {
     pub run: Option<EpisodeRun>,
 }
 
+/// The worst episodes and the best ones: failed episodes are worse than passed ones, and equal
+/// results are ordered by a value.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct EpisodeRanking {
+    /// `duration`, or the test and the name of a measurement.
+    pub by: String,
+    /// The unit of the values.
+    pub unit: String,
+    /// Whether a higher value is worse.
+    pub higher_is_worse: bool,
+    /// The worst episode first.
+    pub worst: Vec<RankedEpisode>,
+    /// The best episode first.
+    pub best: Vec<RankedEpisode>,
+}
+
+/// An episode with a result.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct RankedEpisode {
+    /// The number of the episode.
+    pub episode: u64,
+    /// The result: `passed` or `failed`.
+    pub outcome: String,
+    /// The value by which it is ordered.
+    pub value: f64,
+    /// The parameters.
+    pub parameters: BTreeMap<String, String>,
+    /// Where its messages, plots and attachments are.
+    pub run: EpisodeRun,
+}
+
 /// The run of a worker in which an episode ran.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct EpisodeRun {
     /// The run, as in the routes of runs.
     pub run: String,
-    /// The test that did not pass, if it was one, and if the version of the worker stored it.
+    /// The test that did not pass, or, if all passed, the first one that measured something, or else
+    /// the first one. Missing if no test is the reason, and in results of earlier versions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub test: Option<u32>,
     /// Its attempt in the run, from 1.

@@ -1,6 +1,6 @@
 // The results of one campaign as plots.
 
-import type { CampaignMap, CampaignReport, EpisodeRun } from '../generated/api';
+import type { CampaignMap, CampaignReport, EpisodeRanking, EpisodeRun } from '../generated/api';
 import { runHref, testHref } from './route';
 
 /** The height of the plot of the progress. */
@@ -8,9 +8,30 @@ export const HEIGHT = 200;
 const LEFT = 48;
 const TOP = 8;
 
-/** The page of an episode: the test that did not pass, in the run of its worker. */
+/** The page of an episode: the test that did not pass or shows it, in the run of its worker. */
 export function episodeHref({ run, test, attempt }: EpisodeRun): string {
     return test === undefined ? runHref(run) : testHref(run, test, attempt ?? null);
+}
+
+/** `payload=1.2 surface=wood`. */
+export function parametersText(parameters: Record<string, string>): string {
+    return Object.entries(parameters)
+        .map(([name, value]) => `${name}=${value}`)
+        .join(' ');
+}
+
+/** What episodes are ordered by: `Carry error (rad)`. */
+export function valueName({ by, unit }: Pick<EpisodeRanking, 'by' | 'unit'>): string {
+    return unit === '' ? by : `${by} (${unit})`;
+}
+
+/** How episodes are ordered. */
+export function rankingOrder({ by, higher_is_worse, worst, best }: EpisodeRanking): string {
+    const values = higher_is_worse ? 'higher' : 'lower';
+    const order = `Failed episodes are worse than passed ones, then ${values} values`;
+    // Without one of both results, nothing shows which values are worse.
+    const isShown = by !== 'duration' && worst[0]?.outcome !== best[0]?.outcome;
+    return isShown ? `${order}, which failed episodes have on average.` : `${order}.`;
 }
 
 /** A rate in percent, with one decimal. */

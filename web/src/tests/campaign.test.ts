@@ -1,6 +1,16 @@
 import { expect, test } from 'vitest';
 import type { CampaignMap, CampaignReport } from '../generated/api';
-import { HEIGHT, drawProgress, episodeHref, intervalText, mapOf, mapped } from '../lib/campaign';
+import {
+    HEIGHT,
+    drawProgress,
+    episodeHref,
+    intervalText,
+    mapOf,
+    mapped,
+    parametersText,
+    rankingOrder,
+    valueName,
+} from '../lib/campaign';
 import { campaignOf, parseRoute } from '../lib/route';
 
 const rate = (value: number) => ({ value, low: value - 0.1, high: Math.min(1, value + 0.1) });
@@ -74,4 +84,22 @@ test('an episode has the address of its run, and that leads to the campaign', ()
     expect(overview).toEqual({ at: 'run', run, show: { what: 'overview' } });
     expect(campaignOf(run)).toBe('grasp 1');
     expect(campaignOf('2026')).toBeUndefined();
+});
+
+test('a ranking says what it is ordered by', () => {
+    const episode = { episode: 1, value: 1, parameters: {}, run: { run: '2026' } };
+    const ranking = {
+        by: 'Carry error',
+        unit: 'rad',
+        higher_is_worse: false,
+        worst: [{ ...episode, outcome: 'failed' }],
+        best: [{ ...episode, outcome: 'passed' }],
+    };
+    expect(valueName(ranking)).toBe('Carry error (rad)');
+    expect(valueName({ by: 'Carry error', unit: '' })).toBe('Carry error');
+    expect(rankingOrder(ranking)).toContain('then lower values, which failed episodes have');
+    expect(rankingOrder({ ...ranking, worst: ranking.best })).toMatch(/then lower values\.$/);
+    const duration = { ...ranking, by: 'duration', higher_is_worse: true };
+    expect(rankingOrder(duration)).toMatch(/then higher values\.$/);
+    expect(parametersText({ payload: '1.2', surface: 'wood' })).toBe('payload=1.2 surface=wood');
 });

@@ -51,9 +51,9 @@ struct Before {
     hooks: Vec<usize>,
 }
 
-/// The attempt of a test that did not pass in an episode.
+/// An attempt of a test in a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct ProblemTest {
+pub struct TestAttempt {
     /// The test.
     pub test: TestId,
     /// Its attempt, of all in the run, from 1.
@@ -148,7 +148,7 @@ impl Record {
     /// The test because of which the newest episode of a suite did not pass: the first one with the
     /// worst result. `None` if no test is the reason.
     #[must_use]
-    pub fn episode_problem(&self, suite: SuiteId) -> Option<ProblemTest> {
+    pub fn episode_problem(&self, suite: SuiteId) -> Option<TestAttempt> {
         let suite = self.suites.get(suite.index())?;
         let episode = suite.episodes.last()?;
         let tests = self.tests_of(suite).zip(&episode.before.attempts);
@@ -160,10 +160,26 @@ impl Record {
             let at = part.attempts.iter().rposition(is_problem);
             let at = first + at.unwrap_or(part.attempts.len() - 1);
             let attempt = u32::try_from(at).ok()?.checked_add(1)?;
-            Some((outcome as u8, ProblemTest { test: test.plan.test, attempt }))
+            Some((outcome as u8, TestAttempt { test: test.plan.test, attempt }))
         });
         let problems: Vec<_> = problems.collect();
         problems.into_iter().rev().max_by_key(|(severity, _)| *severity).map(|(_, it)| it)
+    }
+
+    /// The test that shows the newest episode of a suite, if it passed: the first one that measured
+    /// something, or else the first one that ran.
+    #[must_use]
+    pub fn episode_shown(&self, suite: SuiteId) -> Option<TestAttempt> {
+        let suite = self.suites.get(suite.index())?;
+        let before = &suite.episodes.last()?.before;
+        let tests = self.tests_of(suite).zip(&before.attempts);
+        let ran: Vec<_> = tests.filter(|(test, first)| test.attempts.len() > **first).collect();
+        let measured = |(test, first): &&(&TestRecord, &usize)| {
+            test.attempts[**first..].iter().any(|attempt| !attempt.measurements.is_empty())
+        };
+        let (test, _) = ran.iter().find(measured).or(ran.first())?;
+        let attempt = u32::try_from(test.attempts.len()).ok()?;
+        Some(TestAttempt { test: test.plan.test, attempt })
     }
 
     /// Why the attempts of a test in an episode are not green.

@@ -20,7 +20,7 @@ mod test;
 
 pub use case::{AttemptCases, CaseRecord, PlannedCases};
 pub use counts::AttemptCounts;
-pub use episode::{EpisodeOutcome, EpisodeRecord, ProblemTest};
+pub use episode::{EpisodeOutcome, EpisodeRecord, TestAttempt};
 pub use fixture::{FixtureLife, FixtureRecord, FixtureState};
 pub use hook::{HookRecord, HookRunRecord};
 pub use host::HostRecord;

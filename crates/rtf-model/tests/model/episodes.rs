@@ -99,4 +99,6 @@ fn measurements_of_the_newest_episode_are_those_of_its_tests() {
     let values: Vec<_> =
         record.episode_measurements(SUITE).iter().map(|(_, it)| it.value).collect();
     assert_eq!(values, [Some(2.0)]);
+    let shown = record.episode_shown(SUITE).expect("a test");
+    assert_eq!((shown.test, shown.attempt), (TEST, 2));
 }

@@ -3,6 +3,7 @@
 pub mod arrays;
 pub mod directory;
 pub mod judged;
+mod ranking;
 pub mod report;
 pub mod start;
 mod stream;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use rtf_campaign::analysis::{self, ByParameter, Cell, Sample};
 use rtf_campaign::forecast::forecast_text;
 use rtf_campaign::{EpisodeResult, Judge, Ledger, Verdict};
-use rtf_model::{Episode, EpisodeOutcome, ProblemTest};
+use rtf_model::{Episode, EpisodeOutcome, TestAttempt};
 use rtf_web::{
     CampaignCell, CampaignMap, CampaignMapRow, CampaignParameter, CampaignProgress, CampaignReport,
     CampaignSource, EpisodeProblem, EpisodeRun,
@@ -15,6 +15,7 @@ use rtf_web::{
 
 use super::directory::{CampaignDir, DESCRIPTION};
 use super::judged::Judged;
+use super::ranking::Ranking;
 use crate::error::Failure;
 
 /// The directory of campaigns in a results directory.
@@ -56,11 +57,13 @@ pub fn report(dir: &CampaignDir) -> Result<CampaignReport, Failure> {
     let running = Judged::read(&dir.path).is_none() && dir.any_worker_runs();
     let episodes = dir.episodes()?.episodes;
     let mut ledger = Ledger::new(episodes.len(), dir.description.repeats);
-    let mut runs = HashMap::new();
+    let (mut runs, mut ranking) = (HashMap::new(), Ranking::default());
     for (run, line) in dir.recorded_in_runs() {
         if let Some(outcome) = line.outcome {
-            runs.insert(line.episode, episode_run(&dir.path, &run, line.problem));
-            ledger.record(line.episode, outcome, line.reason);
+            let run = episode_run(&dir.path, &run, line.problem.or(line.shown));
+            runs.insert(line.episode, run.clone());
+            ledger.record(line.episode, outcome, line.reason.clone());
+            ranking.add(line, run);
         }
     }
     let judge = Judge::of(start.claim, start.confidence, start.stop, episodes.len());
@@ -93,6 +96,7 @@ pub fn report(dir: &CampaignDir) -> Result<CampaignReport, Failure> {
         progress: progress(&judge, &results[..judgement.episodes.min(results.len())]),
         maps: maps(&samples, &parameters),
         parameters: parameters.into_iter().map(parameter).collect(),
+        rankings: ranking.rankings(&episodes),
         problems,
         problem_count,
     })
@@ -151,7 +155,7 @@ fn maps(samples: &[Sample<'_>], parameters: &[ByParameter]) -> Vec<CampaignMap> 
 }
 
 /// The last run of an episode, as the server names it: relative to the results directory.
-fn episode_run(campaign: &Path, run: &Path, problem: Option<ProblemTest>) -> EpisodeRun {
+fn episode_run(campaign: &Path, run: &Path, problem: Option<TestAttempt>) -> EpisodeRun {
     let inside = run.strip_prefix(campaign).unwrap_or(run);
     let run = Path::new(CAMPAIGNS).join(directory_name(campaign)).join(inside);
     EpisodeRun {
