@@ -38,7 +38,7 @@ const WORKERS: &str = "workers";
 const LIST: &str = "list.jsonl";
 /// How long a lock is waited for: a process that was killed may have a child that does not execute
 /// its program yet, and has the lock, too.
-const LOCK_WAIT: Duration = Duration::from_secs(2);
+const LOCK_WAIT: Duration = Duration::from_millis(500);
 const LOCK_POLL: Duration = Duration::from_millis(20);
 
 /// What a campaign runs. Paths are absolute.
