@@ -17,10 +17,13 @@ checkers=$(tools/venv.sh test)
 # server ends with the tests.
 sccache=$(tools/venv.sh sccache)/sccache
 server=$(mktemp -d)
-export RUSTC_WRAPPER=$sccache CMAKE_C_COMPILER_LAUNCHER=$sccache CMAKE_CXX_COMPILER_LAUNCHER=$sccache
 export SCCACHE_DIR=$CACHE/sccache SCCACHE_CACHE_SIZE=5G SCCACHE_IDLE_TIMEOUT=3600 SCCACHE_SERVER_UDS=$server/socket
 trap '"$sccache" --stop-server >/dev/null 2>&1 || true; rm -rf "$server"' EXIT
-"$sccache" --start-server >/dev/null 2>&1
+if quietly "$sccache" --start-server; then
+  export RUSTC_WRAPPER=$sccache CMAKE_C_COMPILER_LAUNCHER=$sccache CMAKE_CXX_COMPILER_LAUNCHER=$sccache
+else
+  say "the compiler's cache does not start: everything is compiled"
+fi
 
 options=()
 if [ "${1:-}" = quick ]; then
