@@ -25,7 +25,7 @@ class Task:
         # Ends the test's output in a host that continues with the next test.
         self.end_marker = _text_of(params, "end_marker", "")
         self.continues_after_failure = params.get("continues_after_failure", False) is True
-        # Of the environment, for the same reason.
+        # Variables of the environment, which such a host sets before the test.
         self.variables = _texts_of(params, "variables")
         self.parameters = _texts_of(params, "parameters")
         values = _objects_of(params, "fixture_values")

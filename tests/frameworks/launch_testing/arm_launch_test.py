@@ -30,11 +30,12 @@ exit 3
 def generate_test_description():
     """Starts both."""
     motor = ExecuteProcess(cmd=[sys.executable, "-c", MOTOR, LaunchConfiguration("side")])
-    end = Path(tempfile.mkdtemp()) / "end"
+    directory = tempfile.TemporaryDirectory()
+    end = Path(directory.name) / "end"
     homing = ExecuteProcess(cmd=["sh", "-c", HOMING, "sh", str(end)])
     argument = DeclareLaunchArgument("side", default_value="left")
     description = launch.LaunchDescription([argument, motor, homing, ReadyToTest()])
-    return description, {"motor": motor, "homing": homing, "end": end}
+    return description, {"motor": motor, "homing": homing, "end": end, "directory": directory}
 
 
 class TestArm(unittest.TestCase):
