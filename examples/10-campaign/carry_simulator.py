@@ -12,9 +12,8 @@ import signal
 import sys
 
 import lesson_1  # noqa: F401 - makes `line_server` known
-from conditions import Conditions
 from line_server import LineServer, Refused
-from world import World
+from world import Conditions, World
 
 
 def answer(world: World, words: list[str]) -> str:
