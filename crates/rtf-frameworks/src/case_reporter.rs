@@ -214,7 +214,9 @@ impl<'a> CaseReporter<'a> {
                 self.record_result(open.path, !has_problem, is_skipped);
             }
         }
-        let finished = Notification::CaseFinished { case, outcome, reason, duration_us, rerun };
+        let episode = None;
+        let finished =
+            Notification::CaseFinished { case, outcome, reason, duration_us, rerun, episode };
         if self.session.interrupted() {
             return;
         }
@@ -232,7 +234,9 @@ impl<'a> CaseReporter<'a> {
             && let Notification::CaseFinished { outcome, duration_us, rerun, .. } = finished
         {
             let reason = Some("the reason is longer than 16 MiB".to_owned());
-            let end = Notification::CaseFinished { case, outcome, reason, duration_us, rerun };
+            let episode = None;
+            let end =
+                Notification::CaseFinished { case, outcome, reason, duration_us, rerun, episode };
             self.session.forward(&end);
         }
     }

@@ -55,6 +55,7 @@ impl HostPlugin for FrameworkHost {
             stack: StackSupport::Message,
             supports_shared: false,
             selects_cases: true,
+            runs_episodes: false,
         }
     }
 

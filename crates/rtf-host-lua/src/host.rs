@@ -54,6 +54,7 @@ impl HostPlugin for LuaHost {
             stack,
             supports_shared: true,
             selects_cases: true,
+            runs_episodes: false,
         }
     }
 

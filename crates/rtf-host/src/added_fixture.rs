@@ -21,6 +21,7 @@ pub fn describe(name: &str) -> Initialized {
         stack: StackSupport::None,
         supports_shared: false,
         selects_cases: false,
+        runs_episodes: false,
     }
 }
 

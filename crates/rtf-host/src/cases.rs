@@ -198,8 +198,8 @@ impl Cases {
                 _ => (None, None),
             };
             let finished = |reason| {
-                let (duration_us, rerun) = (None, false);
-                Notification::CaseFinished { case, outcome, reason, duration_us, rerun }
+                let (duration_us, rerun, episode) = (None, false, None);
+                Notification::CaseFinished { case, outcome, reason, duration_us, rerun, episode }
             };
             if !send(&finished(reason)) {
                 send(&finished(None));

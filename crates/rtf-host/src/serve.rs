@@ -137,6 +137,8 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
             | Request::TestReported(_)
             | Request::Interrupt { .. }
             | Request::QuestionClosed(_)
+            | Request::Episodes { .. }
+            | Request::EndOfEpisodes {}
             | Request::DumpStack {} => {}
         }
         // The runner may close the channel as soon as it has the answer. That ends the

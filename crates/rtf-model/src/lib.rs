@@ -39,10 +39,10 @@ mod verdict;
 pub use clock::parse_clock;
 pub use diagnostic::{Diagnostic, Label, Severity};
 pub use event::{
-    CaseFinished, CaseStart, CaseStarted, Episode, EpisodeStarted, Event, EventKind, ExitStatus,
-    ExpectedFailure, FixturePlanned, FixtureProvided, HookPlanned, LeakedProcess, LearnedLimits,
-    Output, Parameter, Phase, RunStarted, Significance, Source, StopCause, Stream, SuitePlanned,
-    TestFinished, TestPlanned, Trigger, signal_name, value_text,
+    CaseEpisode, CaseFinished, CaseStart, CaseStarted, Episode, EpisodeEnd, EpisodeStarted, Event,
+    EventKind, ExitStatus, ExpectedFailure, FixturePlanned, FixtureProvided, HookPlanned,
+    LeakedProcess, LearnedLimits, Output, Parameter, Phase, RunStarted, Significance, Source,
+    StopCause, Stream, SuitePlanned, TestFinished, TestPlanned, Trigger, signal_name, value_text,
 };
 pub use failure_line::{FailureLine, explain_failure};
 pub use fault::{

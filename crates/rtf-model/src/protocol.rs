@@ -25,7 +25,7 @@ pub use self::variables::{
     FORK_SERVER_VARIABLE, FORK_VARIABLE, OWNER_VARIABLE, PROGRAM_FORKS_VARIABLE, RUN_DIR_VARIABLE,
     SCOPE_VARIABLE, SESSION_VARIABLE, STACK_FILE_VARIABLE,
 };
-use crate::{Outcome, Parameter};
+use crate::{Episode, Outcome, Parameter};
 
 /// The protocol version of this crate. Runner and host must agree on it.
 pub const PROTOCOL_VERSION: u32 = 1;
@@ -40,7 +40,7 @@ pub const INVALID_PARAMS: i32 = -32602;
 pub const VERSION_MISMATCH: i32 = -32001;
 
 /// A request of the runner. The host answers all but `test-reported`, `interrupt`,
-/// `question-closed` and `dump-stack`.
+/// `question-closed`, `episodes`, `end-of-episodes` and `dump-stack`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "method", content = "params", rename_all = "kebab-case")]
@@ -75,6 +75,13 @@ pub enum Request {
     },
     /// A notification: the end of a question, unless the test is stopped.
     QuestionClosed(QuestionEnd),
+    /// A notification: further episodes for a test with slots.
+    Episodes {
+        /// Those to run.
+        episodes: Vec<Episode>,
+    },
+    /// A notification: no further episode follows.
+    EndOfEpisodes {},
     /// A notification: send [`Notification::Stack`] if possible.
     DumpStack {},
 }
@@ -88,6 +95,8 @@ impl Request {
             Self::TestReported(_)
                 | Self::Interrupt { .. }
                 | Self::QuestionClosed(_)
+                | Self::Episodes { .. }
+                | Self::EndOfEpisodes {}
                 | Self::DumpStack {}
         )
     }
@@ -137,6 +146,9 @@ pub struct Initialized {
     /// Whether it supports [`Plugin::cases`].
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub selects_cases: bool,
+    /// Whether it supports [`Plugin::episodes`].
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub runs_episodes: bool,
 }
 
 /// How the runner gets a stack dump of a host that hangs.
@@ -209,6 +221,23 @@ pub struct Plugin {
     /// The values of fixtures that it can use.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fixture_values: Vec<FixtureValue>,
+    /// Of a test that runs many episodes: how.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub episodes: Option<EpisodeSlots>,
+}
+
+/// How a test runs many episodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct EpisodeSlots {
+    /// How many it runs at the same time, from 1.
+    pub slots: u32,
+    /// The limit of an episode in steps, from 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_steps: Option<u64>,
+    /// The limit of an episode in simulated time, in microseconds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_time_us: Option<u64>,
 }
 
 /// A value of a fixture.

@@ -139,6 +139,7 @@ mod tests {
                 duration_us: None,
                 carried: false,
                 rerun: false,
+                episode: None,
             }),
         ];
         for (kind, bytes) in kinds.into_iter().zip([300, 550, 800]) {

@@ -5,7 +5,9 @@ use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use rtf_model::{EpisodeOutcome, EpisodeRecord, Event, EventKind, Record, SuiteId, TestAttempt};
+use rtf_model::{
+    CaseId, EpisodeOutcome, EpisodeRecord, Event, EventKind, Record, Source, SuiteId, TestAttempt,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::{ReportError, Reporter};
@@ -35,6 +37,9 @@ pub struct EpisodeLine {
     /// What its tests measured, up to [`EpisodeLine::MEASUREMENTS_KEPT`].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub measurements: Vec<EpisodeMeasurement>,
+    /// The same text for the same first observation, if its test reported one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_observation: Option<String>,
 }
 
 /// A number that a test measured in an episode, outside of cases.
@@ -71,6 +76,10 @@ impl EpisodeResults {
         Ok(Self { path, file })
     }
 
+    fn starts(&mut self, episode: u64) -> Result<(), ReportError> {
+        self.write(&EpisodeLine { episode, ..EpisodeLine::default() })
+    }
+
     fn write(&mut self, line: &EpisodeLine) -> Result<(), ReportError> {
         // Numbers and texts always serialise.
         let mut text = serde_json::to_string(line).unwrap_or_default();
@@ -82,20 +91,29 @@ impl EpisodeResults {
 impl Reporter for EpisodeResults {
     fn event(&mut self, event: &Event, record: &Record) -> Result<(), ReportError> {
         match &event.kind {
-            EventKind::EpisodeStarted(started) => {
-                let episode = started.episode.id;
-                self.write(&EpisodeLine { episode, ..EpisodeLine::default() })
+            EventKind::EpisodeStarted(started) => self.starts(started.episode.id),
+            EventKind::CaseStarted(case) => {
+                case.start.episode.map_or(Ok(()), |episode| self.starts(episode.id))
             }
             EventKind::EpisodeFinished { suite, .. } => {
-                last(record, *suite).map_or(Ok(()), |line| self.write(&line))
+                last(record, *suite, None).map_or(Ok(()), |line| self.write(&line))
+            }
+            EventKind::CaseFinished(end) => {
+                let suite = record.suite_of(Source::Test(end.test));
+                let line = suite.and_then(|suite| last(record, suite, Some(end.case)));
+                line.map_or(Ok(()), |line| self.write(&line))
             }
             _ => Ok(()),
         }
     }
 }
 
-fn last(record: &Record, suite: SuiteId) -> Option<EpisodeLine> {
+/// The result of the newest episode, if it is this case.
+fn last(record: &Record, suite: SuiteId, case: Option<CaseId>) -> Option<EpisodeLine> {
     let episode: &EpisodeRecord = record.suites.get(suite.index())?.episodes.last()?;
+    if episode.case() != case {
+        return None;
+    }
     let (finished, outcome, reason) = episode.finished.clone()?;
     Some(EpisodeLine {
         episode: episode.episode.id,
@@ -105,6 +123,7 @@ fn last(record: &Record, suite: SuiteId) -> Option<EpisodeLine> {
         shown: record.episode_shown(suite).filter(|_| outcome == EpisodeOutcome::Passed),
         duration_us: finished.0.saturating_sub(episode.started.0),
         measurements: measurements(record, suite),
+        first_observation: episode.first_observation().map(str::to_owned),
     })
 }
 

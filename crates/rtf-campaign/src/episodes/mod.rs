@@ -70,7 +70,7 @@ pub fn resolve(campaign: &Campaign, resolution: &mut Resolution<'_>) -> Option<E
         let parameters =
             names.zip(values).map(|(name, (value, _))| Parameter { name, value }).collect();
         let seed = seeds.seed(candidate);
-        list.episodes.push(Episode { id: list.episodes.len() as u64 + 1, seed, parameters });
+        list.episodes.push(Episode::new(list.episodes.len() as u64 + 1, seed, parameters));
     }
     let is_enough = match campaign.episodes {
         Some(_) => list.episodes.len() as u64 == wanted,

@@ -25,6 +25,7 @@ impl HostPlugin for ScriptHost {
             stack: StackSupport::None,
             supports_shared: false,
             selects_cases: true,
+            runs_episodes: false,
         }
     }
 

@@ -111,6 +111,7 @@ impl HostPlugin for Script {
             stack,
             supports_shared: true,
             selects_cases: false,
+            runs_episodes: false,
         }
     }
 

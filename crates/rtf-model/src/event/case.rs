@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::{CaseEpisode, EpisodeEnd};
 use crate::{CaseId, Location, TestId, Verdict};
 
 /// A named value: of a matrix, or of a case.
@@ -37,6 +38,9 @@ pub struct CaseStart {
     /// Number of its attempts before this one. The runner counts them.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub earlier_attempts: u32,
+    /// Of an episode of a test with slots: which one. Its parameters are those of the case.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub episode: Option<CaseEpisode>,
 }
 
 impl CaseStart {
@@ -90,4 +94,7 @@ pub struct CaseFinished {
     /// Another attempt of this top-level case follows, which decides.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub rerun: bool,
+    /// What its test reported about an episode.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub episode: Option<Box<EpisodeEnd>>,
 }

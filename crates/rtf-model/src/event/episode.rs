@@ -20,6 +20,43 @@ pub struct Episode {
     #[serde(serialize_with = "write_parameters", deserialize_with = "read_parameters")]
     #[cfg_attr(feature = "schema", schemars(with = "std::collections::BTreeMap<String, String>"))]
     pub parameters: Vec<Parameter>,
+    /// Whether a test with slots runs no other one at the same time.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub alone: bool,
+}
+
+impl Episode {
+    /// An episode that may run beside others.
+    #[must_use]
+    pub fn new(id: u64, seed: u32, parameters: Vec<Parameter>) -> Self {
+        Self { id, seed, parameters, alone: false }
+    }
+}
+
+/// The episode that a case of a test with slots is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct CaseEpisode {
+    /// The number, from 1.
+    pub id: u64,
+    /// For its random numbers. The runner adds it.
+    #[serde(default)]
+    pub seed: u32,
+}
+
+/// What a test with slots reports about an episode that has ended.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct EpisodeEnd {
+    /// How many steps it took.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub steps: Option<u64>,
+    /// Its duration in simulated time, in microseconds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_us: Option<u64>,
+    /// The same text for the same first observation, such as its hash.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_observation: Option<String>,
 }
 
 /// An episode starts: what happens in the suite until `episode-finished` belongs to it.

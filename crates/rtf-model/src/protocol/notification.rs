@@ -7,8 +7,8 @@ use super::MonitorDeclaration;
 #[cfg(doc)]
 use super::Request;
 use crate::{
-    Attachment, CaseId, CaseStart, FaultInjected, Finding, LeakedProcess, Measurement, Message,
-    Outcome, Phase, Question, Samples, TestId, TrajectoryCheck,
+    Attachment, CaseId, CaseStart, EpisodeEnd, FaultInjected, Finding, LeakedProcess, Measurement,
+    Message, Outcome, Phase, Question, Samples, TestId, TrajectoryCheck,
 };
 
 /// A notification from a host.
@@ -81,6 +81,9 @@ pub enum Notification {
         /// Its framework runs this top-level case again, and the next attempt decides.
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         rerun: bool,
+        /// What the test reports about an episode.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        episode: Option<Box<EpisodeEnd>>,
     },
     /// A host that runs cases in programs killed what one of these left behind.
     ProcessesLeft {

@@ -103,6 +103,7 @@ pub struct AttemptCases {
     not_run: PlannedCases,
     counts: [u64; Verdict::ALL.len()],
     omitted: u64,
+    episodes: u64,
     superseded: u64,
     flaky: u64,
 }
@@ -110,6 +111,9 @@ pub struct AttemptCases {
 impl AttemptCases {
     /// Maximum number of passed cases that a [`super::Record`] keeps.
     pub const PASSED_KEPT: u64 = 100_000;
+
+    /// Maximum number of finished episodes that are kept.
+    pub const EPISODES_KEPT: u64 = 256;
 
     /// The cases that are kept, in the order in which they started; of a case that its
     /// framework ran again, all attempts.
@@ -165,7 +169,7 @@ impl AttemptCases {
         Verdict::ALL.into_iter().filter(|verdict| verdict.is_problem()).map(|v| self.of(v)).sum()
     }
 
-    /// Number of passed cases that are counted and not kept; the journal has them.
+    /// Number of passed cases and of episodes that are counted and not kept; the journal has them.
     #[must_use]
     pub fn omitted(&self) -> u64 {
         self.omitted
@@ -214,10 +218,16 @@ impl AttemptCases {
         self.kept.push(CaseRecord { start, path, started: at, finished, is_superseded });
     }
 
-    /// `passed_kept`: the number of passed cases that the run's record keeps.
-    pub(super) fn finish(&mut self, at: Micros, end: &CaseFinished, passed_kept: &mut u64) {
+    /// `passed_kept`: the number of passed cases that the run's record keeps. Returns the cases that
+    /// are not kept any more.
+    pub(super) fn finish(
+        &mut self,
+        at: Micros,
+        end: &CaseFinished,
+        passed_kept: &mut u64,
+    ) -> Vec<CaseId> {
         let Ok(index) = self.kept.binary_search_by_key(&end.case, |case| case.start.case) else {
-            return;
+            return Vec::new();
         };
         self.counts[end.verdict as usize] += 1;
         self.flaky += u64::from(
@@ -225,27 +235,54 @@ impl AttemptCases {
         );
         if end.rerun {
             self.kept[index].finished = Some((at, end.clone()));
-            return self.supersede(index);
+            self.supersede(index);
+            return Vec::new();
         }
-        if end.verdict == Verdict::Passed {
+        if self.kept[index].start.episode.is_some() {
+            if self.episodes >= Self::EPISODES_KEPT {
+                return self.forget(index);
+            }
+            self.episodes += 1;
+        } else if end.verdict == Verdict::Passed {
             if *passed_kept >= Self::PASSED_KEPT {
                 self.omitted += 1;
                 self.kept.remove(index);
-                return;
+                return Vec::new();
             }
             *passed_kept += 1;
         }
         self.kept[index].finished = Some((at, end.clone()));
+        Vec::new()
+    }
+
+    /// Removes a case, and those that it contains.
+    fn forget(&mut self, index: usize) -> Vec<CaseId> {
+        let ids = self.inside(index);
+        let is_removed = |case: &CaseRecord| ids.binary_search(&case.start.case).is_ok();
+        let from = self.kept.split_off(index);
+        self.kept.extend(from.into_iter().filter(|case| !is_removed(case)));
+        self.omitted += ids.len() as u64;
+        ids
+    }
+
+    /// A case and those that it contains, in order.
+    fn inside(&self, index: usize) -> Vec<CaseId> {
+        let mut ids = Vec::new();
+        for (offset, CaseRecord { start, .. }) in self.kept[index..].iter().enumerate() {
+            if offset == 0 || start.parent.is_some_and(|parent| ids.contains(&parent)) {
+                ids.push(start.case);
+            }
+        }
+        ids
     }
 
     /// Removes a case, and those that it contains, from the counts: another attempt decides.
     fn supersede(&mut self, index: usize) {
-        let mut ids = Vec::new();
-        for (offset, case) in self.kept[index..].iter_mut().enumerate() {
-            if offset > 0 && !case.start.parent.is_some_and(|parent| ids.contains(&parent)) {
+        let ids = self.inside(index);
+        for case in &mut self.kept[index..] {
+            if ids.binary_search(&case.start.case).is_err() {
                 continue;
             }
-            ids.push(case.start.case);
             case.is_superseded = true;
             self.superseded += 1;
             if let Some(verdict) = case.verdict() {

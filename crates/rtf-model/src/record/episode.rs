@@ -1,8 +1,11 @@
 //! The episodes of a campaign, and their results.
 
+use super::case_episode::EpisodeCase;
 use super::test::deciding;
 use super::{AttemptRecord, Record, TestRecord};
-use crate::{Episode, EpisodeStarted, EventKind, Measurement, Micros, SuiteId, TestId, Verdict};
+use crate::{
+    CaseId, Episode, EpisodeStarted, EventKind, Measurement, Micros, SuiteId, TestId, Verdict,
+};
 
 /// The result of one execution of an episode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -19,6 +22,15 @@ pub enum EpisodeOutcome {
 }
 
 impl EpisodeOutcome {
+    /// The result of an episode in which something that is not green has this verdict.
+    pub(super) fn of_problem(verdict: Verdict) -> Self {
+        match verdict {
+            Verdict::Error | Verdict::Interrupted => Self::Error,
+            Verdict::Collapsed => Self::Collapsed,
+            _ => Self::Failed,
+        }
+    }
+
     /// Whether the result says something about the bench only.
     #[must_use]
     pub fn is_of_bench(self) -> bool {
@@ -27,7 +39,7 @@ impl EpisodeOutcome {
 }
 
 /// One execution of an episode.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct EpisodeRecord {
     /// The episode.
     pub episode: Episode,
@@ -38,6 +50,8 @@ pub struct EpisodeRecord {
     pub finished: Option<(Micros, EpisodeOutcome, Option<String>)>,
     /// What there was when it started.
     before: Before,
+    /// If it is a case: which one, and what its test reported about it.
+    pub(super) case: Option<EpisodeCase>,
 }
 
 /// How many attempts and problems there were before an episode.
@@ -58,6 +72,16 @@ pub struct TestAttempt {
     pub test: TestId,
     /// Its attempt, of all in the run, from 1.
     pub attempt: u32,
+    /// The case that the episode is, of a test with slots.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub case: Option<CaseId>,
+}
+
+impl EpisodeRecord {
+    pub(super) fn of_case(episode: Episode, started: Micros, case: EpisodeCase) -> Self {
+        let before = Before::default();
+        Self { episode, started, finished: None, before, case: Some(case) }
+    }
 }
 
 impl Record {
@@ -74,8 +98,8 @@ impl Record {
     fn start_episode(&mut self, at: Micros, started: &EpisodeStarted) {
         let Some(before) = self.before_episode(started.suite) else { return };
         let episode = started.episode.clone();
-        let record = EpisodeRecord { episode, started: at, finished: None, before };
-        self.suite(started.suite, |suite| suite.episodes.push(record));
+        let record = EpisodeRecord { episode, started: at, finished: None, before, case: None };
+        self.suite(started.suite, |suite| suite.keep_episode(record));
     }
 
     fn before_episode(&self, suite: SuiteId) -> Option<Before> {
@@ -133,6 +157,11 @@ impl Record {
     pub fn episode_measurements(&self, suite: SuiteId) -> Vec<(&TestRecord, &Measurement)> {
         let Some(suite) = self.suites.get(suite.index()) else { return Vec::new() };
         let Some(episode) = suite.episodes.last() else { return Vec::new() };
+        if let Some(case) = &episode.case {
+            let test = self.tests.get(case.test.index());
+            return test
+                .map_or(Vec::new(), |test| case.measured.iter().map(|it| (test, it)).collect());
+        }
         let tests = self.tests_of(suite).zip(&episode.before.attempts);
         let attempts = tests.flat_map(|(test, first)| {
             let attempts = test.attempts.get(*first..).unwrap_or_default();
@@ -151,6 +180,9 @@ impl Record {
     pub fn episode_problem(&self, suite: SuiteId) -> Option<TestAttempt> {
         let suite = self.suites.get(suite.index())?;
         let episode = suite.episodes.last()?;
+        if let Some(case) = &episode.case {
+            return self.attempt_of(case);
+        }
         let tests = self.tests_of(suite).zip(&episode.before.attempts);
         let problems = tests.filter_map(|(test, first)| {
             let part = test.since(*first);
@@ -160,7 +192,7 @@ impl Record {
             let at = part.attempts.iter().rposition(is_problem);
             let at = first + at.unwrap_or(part.attempts.len() - 1);
             let attempt = u32::try_from(at).ok()?.checked_add(1)?;
-            Some((outcome as u8, TestAttempt { test: test.plan.test, attempt }))
+            Some((outcome as u8, TestAttempt { test: test.plan.test, attempt, case: None }))
         });
         let problems: Vec<_> = problems.collect();
         problems.into_iter().rev().max_by_key(|(severity, _)| *severity).map(|(_, it)| it)
@@ -171,7 +203,11 @@ impl Record {
     #[must_use]
     pub fn episode_shown(&self, suite: SuiteId) -> Option<TestAttempt> {
         let suite = self.suites.get(suite.index())?;
-        let before = &suite.episodes.last()?.before;
+        let episode = suite.episodes.last()?;
+        if let Some(case) = &episode.case {
+            return self.attempt_of(case);
+        }
+        let before = &episode.before;
         let tests = self.tests_of(suite).zip(&before.attempts);
         let ran: Vec<_> = tests.filter(|(test, first)| test.attempts.len() > **first).collect();
         let measured = |(test, first): &&(&TestRecord, &usize)| {
@@ -179,7 +215,7 @@ impl Record {
         };
         let (test, _) = ran.iter().find(measured).or(ran.first())?;
         let attempt = u32::try_from(test.attempts.len()).ok()?;
-        Some(TestAttempt { test: test.plan.test, attempt })
+        Some(TestAttempt { test: test.plan.test, attempt, case: None })
     }
 
     /// Why the attempts of a test in an episode are not green.
@@ -188,11 +224,7 @@ impl Record {
             return None;
         }
         let verdict = part.final_verdict();
-        let outcome = match verdict {
-            Verdict::Error | Verdict::Interrupted => EpisodeOutcome::Error,
-            Verdict::Collapsed => EpisodeOutcome::Collapsed,
-            _ => EpisodeOutcome::Failed,
-        };
+        let outcome = EpisodeOutcome::of_problem(verdict);
         let name = &part.plan.name;
         let text = match part.reason() {
             Some(reason) => format!("{name}: {reason}"),

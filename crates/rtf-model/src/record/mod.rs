@@ -4,6 +4,7 @@
 //! JUnit file and every other report read a `Record`; none keeps separate state.
 
 mod case;
+mod case_episode;
 mod counts;
 mod episode;
 mod fixture;
@@ -151,6 +152,14 @@ impl Record {
                         host::record_usage(&mut s.hosts, *test, *tests_served, *usage)
                     });
                 }
+            }
+            EventKind::CaseStarted(started) => {
+                self.start_case_episode(at, started);
+                self.apply_to_source(at, &event.kind);
+            }
+            EventKind::CaseFinished(end) => {
+                self.finish_case_episode(at, end);
+                self.apply_to_source(at, &event.kind);
             }
             kind if self.apply_plan(kind) || self.apply_to_episode(at, kind) => {}
             kind => self.apply_to_source(at, kind),

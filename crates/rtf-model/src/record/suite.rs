@@ -17,8 +17,10 @@ pub struct SuiteRecord {
     pub tests: Vec<TestId>,
     /// The shared hosts, the oldest first; recorded when tests are repeated.
     pub hosts: Vec<HostRecord>,
-    /// Its episodes in a campaign, the oldest first.
+    /// Its newest episodes in a campaign, the oldest first.
     pub episodes: Vec<EpisodeRecord>,
+    /// Those that are cases and have not finished, in the order in which they started.
+    pub(super) open_episodes: Vec<EpisodeRecord>,
     /// Its private network, ports and variables, if it has any.
     pub prepared: Option<SuitePrepared>,
     /// When it started.
@@ -28,8 +30,19 @@ pub struct SuiteRecord {
 }
 
 impl SuiteRecord {
+    /// The number of episodes that are kept at least.
+    pub const EPISODES_KEPT: usize = 256;
+
     pub(super) fn new(plan: SuitePlanned) -> Self {
         Self { plan, ..Self::default() }
+    }
+
+    /// Adds an episode, and forgets old ones, which the journal has.
+    pub(super) fn keep_episode(&mut self, episode: EpisodeRecord) {
+        if self.episodes.len() >= 2 * Self::EPISODES_KEPT {
+            self.episodes.drain(..Self::EPISODES_KEPT);
+        }
+        self.episodes.push(episode);
     }
 
     /// The shared hosts whose resources grew. Of several hosts that served the

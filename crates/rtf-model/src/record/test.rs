@@ -117,7 +117,8 @@ impl TestRecord {
                 if let Some(attempt) = self.attempts.last_mut() {
                     match kind {
                         EventKind::CaseFinished(end) => {
-                            attempt.cases.finish(at, end, passed_cases_kept);
+                            let forgotten = attempt.cases.finish(at, end, passed_cases_kept);
+                            attempt.forget(&forgotten);
                         }
                         kind => attempt.apply(at, kind),
                     }
@@ -276,6 +277,17 @@ impl AttemptRecord {
             EventKind::TestFinished(finished) => self.finish(at, finished),
             _ => {}
         }
+    }
+
+    /// Forgets what was reported in these cases; the journal has it.
+    fn forget(&mut self, cases: &[CaseId]) {
+        if cases.is_empty() {
+            return;
+        }
+        let is_kept = |case: Option<CaseId>| !case.is_some_and(|case| cases.contains(&case));
+        self.measurements.retain(|measurement| is_kept(measurement.case));
+        self.messages.retain(|message| is_kept(message.case));
+        self.attachments.retain(|attachment| is_kept(attachment.case));
     }
 
     fn keep_message(&mut self, message: &Message) {

@@ -31,6 +31,7 @@ fn case_ends_after(number: u32, verdict: Verdict, carried_after_us: Option<u64>)
         duration_us: carried_after_us,
         carried: carried_after_us.is_some(),
         rerun: false,
+        episode: None,
     })
 }
 

@@ -113,6 +113,7 @@ fn interrupted_case(test: TestId, case: CaseId) -> EventKind {
         duration_us: None,
         carried: false,
         rerun: false,
+        episode: None,
     })
 }
 

@@ -200,17 +200,18 @@ impl<'a> PartReading<'a> {
                 merged.prepared.get_or_insert(prepared);
             }
             _ => {
+                let episode = episode_of(&kind);
                 let part = self.part;
                 let piece = self.pieces.entry(suite).or_insert_with(|| Piece::of(part));
                 piece.extend(start, &self.position);
                 match kind {
                     EventKind::SuiteStarted { .. } => piece.started = Some(at),
                     EventKind::SuiteFinished { .. } => piece.is_whole = true,
-                    EventKind::EpisodeStarted(started) => {
-                        self.episodes.insert(suite, started.episode.id);
-                        self.merged_suite(suite).has_episodes = true;
-                    }
                     _ => {}
+                }
+                if let Some(episode) = episode {
+                    self.episodes.insert(suite, episode);
+                    self.merged_suite(suite).has_episodes = true;
                 }
             }
         }
@@ -245,5 +246,13 @@ impl<'a> PartReading<'a> {
             let piece = self.pieces.remove(&suite).unwrap_or_else(|| Piece::of(self.part));
             self.merged_suite(suite).pieces.push(piece);
         }
+    }
+}
+/// The episode that an event starts.
+fn episode_of(kind: &EventKind) -> Option<u64> {
+    match kind {
+        EventKind::EpisodeStarted(started) => Some(started.episode.id),
+        EventKind::CaseStarted(started) => Some(started.start.episode?.id),
+        _ => None,
     }
 }

@@ -30,6 +30,7 @@ fn finish(run: &mut Writer, case: u32, verdict: Verdict) {
         duration_us: None,
         carried: false,
         rerun: false,
+        episode: None,
     }));
 }
 

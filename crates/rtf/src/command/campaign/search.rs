@@ -148,7 +148,7 @@ impl Search<'_> {
         if seed > i32::MAX.cast_unsigned() {
             return Err(format!("`seed` is at most {}", i32::MAX));
         }
-        Ok(Episode { id, seed, parameters })
+        Ok(Episode::new(id, seed, parameters))
     }
 
     fn answer(&self, line: EpisodeLine) -> Result<(), Failure> {

@@ -121,7 +121,7 @@ impl Lab<'_> {
             return Ok(false);
         }
         self.runs.push(values.to_vec());
-        let episode = Episode { id: self.runs.len() as u64, seed: self.seed, parameters };
+        let episode = Episode::new(self.runs.len() as u64, self.seed, parameters);
         let line = runtime.block_on(pool.run(episode.clone(), signals))?;
         let outcome = line.outcome.unwrap_or(EpisodeOutcome::Error);
         if self.is_text {

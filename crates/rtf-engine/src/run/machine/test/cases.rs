@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use rtf_model::{
-    CaseFinished, CaseId, CaseStart, CaseStarted, Diagnostic, EventKind, Outcome, Phase,
-    PlannedCases, Verdict,
+    CaseFinished, CaseId, CaseStart, CaseStarted, Diagnostic, EpisodeEnd, EventKind, Outcome,
+    Phase, PlannedCases, Verdict,
 };
 
 use super::TestRun;
@@ -62,6 +62,7 @@ pub(super) struct FinishedCase {
     pub reason: Option<String>,
     pub duration_us: Option<u64>,
     pub rerun: bool,
+    pub episode: Option<Box<EpisodeEnd>>,
 }
 
 /// The result of a case apart from its reported problems.
@@ -259,7 +260,7 @@ impl TestRun<'_> {
     }
 
     pub(super) fn finish_case(&mut self, finished: FinishedCase, cx: &mut Context<'_>) {
-        let FinishedCase { case, outcome, reason, duration_us, rerun } = finished;
+        let FinishedCase { case, outcome, reason, duration_us, rerun, episode } = finished;
         let Some(number) = self.cases.open(Some(case)) else {
             return self.on_protocol_error(format!("finished case {case}, which is not open"), cx);
         };
@@ -280,7 +281,7 @@ impl TestRun<'_> {
             true => CaseResult::Attempt(verdict, reason),
             false => CaseResult::Case(verdict, reason),
         };
-        self.end_case(number, result, duration_us, cx);
+        self.end_case(number, result, (duration_us, episode), cx);
     }
 
     /// Adds the finished cases of an earlier attempt.
@@ -312,7 +313,7 @@ impl TestRun<'_> {
                     CaseResult::Case(Verdict::Error, Some(reason))
                 }
             };
-            self.end_case(open.id, result, None, cx);
+            self.end_case(open.id, result, (None, None), cx);
         }
         let result = ended.then_some((verdict, reason));
         self.close_reruns(result.as_ref(), cx);
@@ -339,7 +340,7 @@ impl TestRun<'_> {
                 }
                 None => CaseResult::Case(Verdict::Error, Some(due.not_started())),
             };
-            self.end_case(case, result, None, cx);
+            self.end_case(case, result, (None, None), cx);
         }
     }
 
@@ -348,7 +349,7 @@ impl TestRun<'_> {
         &mut self,
         case: CaseId,
         result: CaseResult,
-        duration_us: Option<u64>,
+        (duration_us, episode): (Option<u64>, Option<Box<EpisodeEnd>>),
         cx: &mut Context<'_>,
     ) {
         let Some(index) = self.cases.open.iter().rposition(|open| open.id == case) else { return };
@@ -378,8 +379,17 @@ impl TestRun<'_> {
         }
         let outer = problem.map(|problem| open.describe(problem));
         let carried = false;
-        let end =
-            CaseFinished { test, case, verdict, reason, decided_by, duration_us, carried, rerun };
+        let end = CaseFinished {
+            test,
+            case,
+            verdict,
+            reason,
+            decided_by,
+            duration_us,
+            carried,
+            rerun,
+            episode,
+        };
         if let Some(history) = &mut self.cases.history {
             history.finish(&end, outer.as_ref(), cx.now());
         }

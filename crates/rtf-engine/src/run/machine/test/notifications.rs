@@ -32,8 +32,8 @@ impl TestRun<'_> {
             Notification::Stack { text } => self.on_host_dump(text, cx),
             Notification::CasesPlanned { names } => self.plan_cases(names, cx),
             Notification::CaseStarted(start) => self.start_case(start, cx),
-            Notification::CaseFinished { case, outcome, reason, duration_us, rerun } => {
-                let finished = FinishedCase { case, outcome, reason, duration_us, rerun };
+            Notification::CaseFinished { case, outcome, reason, duration_us, rerun, episode } => {
+                let finished = FinishedCase { case, outcome, reason, duration_us, rerun, episode };
                 self.finish_case(finished, cx);
             }
             Notification::ProcessesLeft { case, processes } => {

@@ -25,7 +25,8 @@ fn run_case(world: &mut World<'_>, name: &str) {
     let start = CaseStart::new(case, name);
     world.input(TEST, ProcessEvent::Notified(Notification::CaseStarted(start)));
     let (outcome, reason, duration_us, rerun) = (None, None, None, false);
-    let end = Notification::CaseFinished { case, outcome, reason, duration_us, rerun };
+    let end =
+        Notification::CaseFinished { case, outcome, reason, duration_us, rerun, episode: None };
     world.input(TEST, ProcessEvent::Notified(end));
 }
 

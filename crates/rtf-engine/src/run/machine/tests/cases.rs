@@ -46,7 +46,8 @@ impl World<'_> {
     pub(super) fn case_is_rerun(&mut self, case: u32, outcome: Outcome) {
         let (case, outcome, reason) = (CaseId(case), Some(outcome), Some("no".to_owned()));
         let (duration_us, rerun) = (None, true);
-        let end = Notification::CaseFinished { case, outcome, reason, duration_us, rerun };
+        let end =
+            Notification::CaseFinished { case, outcome, reason, duration_us, rerun, episode: None };
         self.notified(end);
     }
 

@@ -56,7 +56,7 @@ fn report(choice: u8) -> Notification {
         3 => {
             let case = CaseId(1 + number / 128);
             let (outcome, reason, duration_us, rerun) = (None, None, None, choice & 1 == 1);
-            Notification::CaseFinished { case, outcome, reason, duration_us, rerun }
+            Notification::CaseFinished { case, outcome, reason, duration_us, rerun, episode: None }
         }
         _ => {
             let (kind, text, critical) = (MessageKind::Failure, "no".to_owned(), choice > 240);
@@ -218,7 +218,7 @@ fn end_all(world: &mut World<'_>) {
 }
 
 fn episode(id: u64) -> Episode {
-    Episode { id, seed: 1, parameters: Vec::new() }
+    Episode::new(id, 1, Vec::new())
 }
 
 fn reset() -> ResetPlan {

@@ -21,7 +21,7 @@ fn plan(episodes: u64) -> SuitePlan {
     plan.refers_to_values = true;
     let episode = |id| {
         let value = format!("{id}.5");
-        Episode { id, seed: 7, parameters: vec![Parameter { name: "mass".to_owned(), value }] }
+        Episode::new(id, 7, vec![Parameter { name: "mass".to_owned(), value }])
     };
     plan.episodes = (1..=episodes).map(episode).collect();
     plan
