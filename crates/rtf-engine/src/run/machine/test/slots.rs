@@ -45,7 +45,8 @@ impl Slots {
             is_alone: false,
             is_closed: false,
             changed: Duration::ZERO,
-            limit: None,
+            // Any time: the first one is set.
+            limit: Some(Duration::ZERO),
         }
     }
 
