@@ -6,7 +6,7 @@ from collections import deque
 
 from rtf import _exceptions, _text
 from rtf._episode import Episode
-from rtf._stop import CriticalAssertionEnded, Interrupted, Skipped, StepEnded
+from rtf._stop import CriticalAssertionEnded, Error, Interrupted, Skipped, StepEnded
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
@@ -165,6 +165,6 @@ class Episodes:
 def summary(problem: BaseException) -> str:
     """Return an exception in one line."""
     text = str(problem).partition("\n")[0]
-    if isinstance(problem, StepEnded):
+    if isinstance(problem, (StepEnded, Error)):
         return f"`{text}`"
     return f"{type(problem).__name__}: {text}" if text else type(problem).__name__
