@@ -27,6 +27,8 @@ class Episodes:
         """Expect episodes of the runner."""
         self.settings = settings
         self.open: dict[int, Episode] = {}
+        # Whether several episodes end within moments: then their results are sent in one write.
+        self.is_holding = False
         self._session = session
         self._arrived: deque[dict[str, Any]] = deque()
         self._has_ended = False
@@ -51,8 +53,16 @@ class Episodes:
         taken = [self._arrived.popleft() for _ in range(min(count, len(self._arrived)))]
         return self._start(taken) if taken else []
 
+    def flush(self) -> None:
+        """Send held results."""
+        self._session.flush()
+
     def _receive(self) -> None:
-        arrived = self._session.request.episodes.get()
+        queue = self._session.request.episodes
+        if queue.empty():
+            self._session.sampling.send()
+            self.flush()
+        arrived = queue.get()
         if arrived is not None:
             self._arrived.extend(arrived)
             return
@@ -116,7 +126,8 @@ class Episodes:
         if self.open.pop(episode.case, None) is None:
             raise RuntimeError(f"episode {episode.id} belongs to another test")
         episode.is_finished = True
-        cases.finish_episode(episode.case, episode.encoded_end(outcome, reason))
+        end = episode.encoded_end(outcome, reason)
+        cases.finish_episode(episode.case, end, held=self.is_holding)
 
     def limit_reason(self, steps: int | None, time: float | None) -> str:
         """Return why an episode that takes so many steps, or so long, has timed out, if it has."""

@@ -195,7 +195,7 @@ def test_a_limit_of_a_finished_episode(tmp_path: Path) -> None:
         ("one.finish(True); self.take(0)",
          "ValueError: `take` would wait without an end: `most` is 0"),
         ("self.plan_cases(['lift'])",
-         "the cases of an episode test are its episodes, which nobody plans"),
+         "the cases of an episode test are its episodes, which cannot be planned"),
     ],
 )  # fmt: skip
 def test_mistakes_of_a_test(tmp_path: Path, call: str, problem: str) -> None:
@@ -420,7 +420,7 @@ def test_a_test_without_episode_or_run(tmp_path: Path) -> None:
 def test_a_coroutine_is_an_error(tmp_path: Path) -> None:
     body = "class Arm(rtf.EpisodeTest):\n    async def episode(self, episode):\n        pass\n"
     runner = run_episodes(tmp_path, body, [1])
-    text = "TypeError: `episode` is a coroutine, which nobody runs: use a generator"
+    text = "TypeError: `episode` is a coroutine, expected a generator"
     assert runner.results[1].messages == [("error", text)]
     assert runner.errors == ""
 

@@ -116,7 +116,11 @@ def ended_processes(envs: Any, problem: Exception) -> dict[int, str]:
     processes = _processes(envs)
     if not processes or not isinstance(problem, (EOFError, OSError)):
         return {}
-    connection.wait([process.sentinel for process in processes], _END_SECONDS)
+    ended = connection.wait([process.sentinel for process in processes], _END_SECONDS)
+    for process in processes:
+        # Its files are closed before its exit code is known.
+        if process.sentinel in ended:
+            process.join(_END_SECONDS)
     codes = {slot: process.exitcode for slot, process in enumerate(processes)}
     return {
         slot: f"exit code {code}" if code >= 0 else Signals(-code).name

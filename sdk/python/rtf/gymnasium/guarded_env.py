@@ -27,7 +27,7 @@ class GuardedEnv(gymnasium.Wrapper):  # type: ignore[misc, type-arg, unused-igno
         self._slot = slot
         self._parameters: dict[str, str] | None = None
         self._has_failed = False
-        # Stands for the observations after an exception, which nobody judges.
+        # Stands for the observations after an exception, which are ignored.
         self.observation_space.seed(0)
         self._blank = self.observation_space.sample()
 
@@ -47,7 +47,7 @@ class GuardedEnv(gymnasium.Wrapper):  # type: ignore[misc, type-arg, unused-igno
             result = self.env.reset(seed=seed, options=options or None)
             observation, info = _checked(result, "reset", ("observation", "info"))
             self._check_shape(observation, "reset")
-        except Exception as problem:  # noqa: BLE001 - whatever the environment raises
+        except Exception as problem:  # noqa: BLE001 - that of the environment
             return self._blank, self._failed(problem)
         return observation, info
 
@@ -61,7 +61,7 @@ class GuardedEnv(gymnasium.Wrapper):  # type: ignore[misc, type-arg, unused-igno
             observation, reward, terminated, truncated, info = result
             self._check_shape(observation, "step")
             return observation, float(reward), bool(terminated), bool(truncated), info
-        except Exception as problem:  # noqa: BLE001 - whatever the environment raises
+        except Exception as problem:  # noqa: BLE001 - that of the environment
             return self._blank, 0.0, False, False, self._failed(problem)
 
     def _check_shape(self, observation: Any, function: str) -> None:

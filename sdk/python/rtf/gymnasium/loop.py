@@ -46,13 +46,20 @@ class Loop:
             self._slots.check_actions(actions)
             with self._attributed_to_all("step"):
                 self._slots.step(actions)
-            self._end_episodes()
+            self._episodes.is_holding = True
+            try:
+                self._end_episodes()
+            finally:
+                self._episodes.is_holding = False
 
     def _fill(self) -> bool:
         """Start episodes in free slots; whether any episode is open."""
         while True:
             free = [slot for slot in range(self._slots.count) if slot not in self._open]
             taken = self._test.take(len(free), wait=not self._open) if free else []
+            if not taken:
+                # Environments and the policy may take long, or crash.
+                self._episodes.flush()
             if not taken and not self._open:
                 return False
             running = list(self._open)

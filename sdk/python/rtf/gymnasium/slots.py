@@ -36,7 +36,7 @@ class Slots:
         self.observations: Any = None
         self.infos: dict[str, Any] = {}
         # Arrays with a number for each slot. `done`: it must be reset before the next step.
-        self.done = np.ones(self.count, np.bool_)
+        self.done: NDArray[np.bool_] = np.ones(self.count, np.bool_)
         self.terminated = np.zeros(self.count, np.bool_)
         self.truncated = np.zeros(self.count, np.bool_)
         self.steps = np.zeros(self.count, np.int64)
