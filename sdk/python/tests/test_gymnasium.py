@@ -108,6 +108,21 @@ def test_results_do_not_depend_on_slots_and_order(tmp_path: Path, *, asynchronou
 
 
 @pytest.mark.parametrize("asynchronous", [False, True])
+def test_the_other_mode_is_the_other_vector_environment(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, asynchronous: bool
+) -> None:
+    body = (
+        f"{LINE}{TEST}    asynchronous = {asynchronous}\n"
+        "    def configure(self, envs, slot, episode):\n        self.report(type(envs).__name__)\n"
+    )
+    kinds = ["SyncVectorEnv", "AsyncVectorEnv"]
+    for variable, expected in (("", asynchronous), ("other", not asynchronous)):
+        monkeypatch.setenv("RTF_VECTOR_MODE", variable)
+        runner = run_episodes(tmp_path, body, seeded(1), slots=1)
+        assert {text for _, text in runner.results[1].messages} == {kinds[expected]}
+
+
+@pytest.mark.parametrize("asynchronous", [False, True])
 def test_a_task_of_mujoco(tmp_path: Path, *, asynchronous: bool) -> None:
     pytest.importorskip("mujoco")
     body = f"""import gymnasium, rtf.gymnasium
@@ -137,7 +152,7 @@ def test_slots_without_an_episode_repeat_one_that_runs(tmp_path: Path) -> None:
         "        self.report(f'{slot}: {episode.parameter(\"mass\")}')\n"
     )
     runner = EpisodeRunner(tmp_path, LINE + TEST + log, slots=3)
-    # The goal of the first one is far: the slot of the second one is done twice meanwhile.
+    # The goal of the first one is far: the slot of the second one is done several times before.
     runner.give(
         {"id": 1, "seed": 4, "parameters": {"mass": "1"}},
         {"id": 2, "seed": 11, "parameters": {"mass": "2"}},

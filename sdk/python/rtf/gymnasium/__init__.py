@@ -13,7 +13,7 @@ A test is a class with an environment and a policy, and often with a judgement::
             return policy(observations)
 
         def judge(self, end):
-            return end.reward > -8 or f"the reward is {end.reward:.1f}"
+            return end.reward > -12 or f"the reward is {end.reward:.1f}"
 
 Gymnasium and numpy are imported when the test runs.
 """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 
 from rtf._episode_test import EpisodeTest, current
@@ -64,7 +65,9 @@ class VectorTest(EpisodeTest):
         """
         from rtf.gymnasium import environments  # noqa: PLC0415 - needs Gymnasium
 
-        return environments.make(self.make_env, slots, asynchronous=self.asynchronous)
+        # `rtf campaign invariance` compares both modes.
+        is_other = os.environ.get("RTF_VECTOR_MODE") == "other"
+        return environments.make(self.make_env, slots, asynchronous=self.asynchronous != is_other)
 
     def act(self, observations: Any) -> Any:
         """Return the actions of all slots.
