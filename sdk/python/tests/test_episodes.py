@@ -272,6 +272,37 @@ def test_threads_enter_different_episodes(tmp_path: Path) -> None:
     assert runner.outside == []
 
 
+def test_threads_take_episodes(tmp_path: Path) -> None:
+    body = "import threading\n" + episode_test(
+        "def work(self):\n"
+        "    while episodes := self.take(1):\n"
+        "        with episodes[0] as episode:\n            self.report(episode.id)\n"
+        "        episode.finish()\n"
+        "def run(self):\n"
+        "    threads = [threading.Thread(target=self.work) for _ in range(self.slots)]\n"
+        "    for thread in threads:\n        thread.start()\n"
+        "    self.report('all wait or work')\n"
+        "    for thread in threads:\n        thread.join()\n"
+    )
+    runner = EpisodeRunner(tmp_path, body, slots=4)
+    while not runner.outside:
+        assert runner.read()
+    runner.give(*range(1, 61))
+    while len(runner.events) < 120:
+        assert runner.read()
+    # All threads wait, and are woken.
+    runner.end()
+    runner.finish()
+    assert runner.verdicts() == ["passed"] * 60
+    assert all(it.messages == [("report", str(n))] for n, it in runner.results.items())
+    runner = EpisodeRunner(tmp_path, body, slots=4)
+    while not runner.outside:
+        assert runner.read()
+    runner.host.send("interrupt", {"reason": "enough"})
+    runner.finish()
+    assert runner.answer == {"outcome": "interrupted", "reason": "enough"}
+
+
 def test_episodes_arrive_while_others_run(tmp_path: Path) -> None:
     body = episode_test(
         "def run(self):\n"
