@@ -212,3 +212,6 @@ fn causes(all: &[Compared], is_exact: bool) -> Vec<Cause> {
     }
     causes
 }
+
+#[cfg(test)]
+mod tests;
