@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use rtf_model::Episode;
 use rtf_model::protocol::{INVALID_PARAMS, METHOD_NOT_FOUND, Request, RpcError};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -64,6 +65,11 @@ struct Interrupt {
     request: Option<u64>,
 }
 
+#[derive(Serialize, Deserialize)]
+struct Episodes {
+    episodes: Vec<Episode>,
+}
+
 /// Decodes a line without its end.
 #[must_use]
 pub fn decode(line: &[u8]) -> Incoming {
@@ -89,6 +95,9 @@ pub fn decode(line: &[u8]) -> Incoming {
         "interrupt" => parse::<Interrupt>(params)
             .map(|p| Request::Interrupt { reason: p.reason, request: p.request }),
         "question-closed" => parse(params).map(Request::QuestionClosed),
+        "episodes" => parse::<Episodes>(params)
+            .map(|further| Request::Episodes { episodes: further.episodes }),
+        "end-of-episodes" => Ok(Request::EndOfEpisodes {}),
         "dump-stack" => Ok(Request::DumpStack {}),
         unknown => return refused(id, METHOD_NOT_FOUND, format!("unknown method `{unknown}`")),
     };
