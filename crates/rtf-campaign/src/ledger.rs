@@ -15,6 +15,8 @@ pub const MAX_BENCH_RESULTS: u32 = 10;
 pub struct Executions {
     /// The results that were the bench's.
     pub bench: u32,
+    /// How often it was lost: several episodes were open in a process that ended.
+    pub lost: u32,
     /// The result, once it is final.
     pub result: Option<EpisodeResult>,
     /// The last result and its reason.
@@ -85,6 +87,21 @@ impl Ledger {
                 self.open.remove(&(executions.bench, episode));
             }
         }
+    }
+
+    /// A worker has ended while these episodes were open, and it is unknown which one is to blame.
+    pub fn lose(&mut self, episodes: &BTreeSet<u64>) {
+        for index in episodes.iter().filter_map(|episode| index(*episode)) {
+            self.episodes.get_mut(index).into_iter().for_each(|it| it.lost += 1);
+        }
+    }
+
+    /// Whether an episode is to run without others in its process: what happens then is its own
+    /// result.
+    #[must_use]
+    pub fn runs_alone(&self, episode: u64) -> bool {
+        let executions = index(episode).and_then(|index| self.episodes.get(index));
+        executions.is_some_and(|it| it.bench > 0 || it.lost > 0)
     }
 
     /// A worker has ended without results of these episodes.

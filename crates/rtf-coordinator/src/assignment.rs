@@ -15,8 +15,8 @@ pub struct Assignment {
     pub worker: u32,
     /// Its episodes without a result.
     pub left: BTreeSet<u64>,
-    /// The episode that has started and not finished.
-    pub running: Option<u64>,
+    /// The episodes that have started and not finished.
+    pub running: BTreeSet<u64>,
     /// Whether an episode has finished.
     pub has_results: bool,
     results: ResultFollower,
@@ -28,7 +28,7 @@ impl Assignment {
         Self {
             worker,
             left: episodes.into_iter().collect(),
-            running: None,
+            running: BTreeSet::new(),
             has_results: false,
             results: ResultFollower::of_worker(dir, worker),
         }
@@ -38,14 +38,18 @@ impl Assignment {
     pub fn new_results(&mut self) -> Vec<EpisodeLine> {
         let mut results = Vec::new();
         for line in self.results.read() {
-            self.running = line.outcome.is_none().then_some(line.episode);
-            if line.outcome.is_some() && self.left.remove(&line.episode) {
+            if line.outcome.is_none() {
+                self.running.insert(line.episode);
+                continue;
+            }
+            self.running.remove(&line.episode);
+            if self.left.remove(&line.episode) {
                 self.has_results = true;
                 results.push(line);
             }
         }
         // An earlier run of the worker may have finished it late.
-        self.running = self.running.filter(|episode| self.left.contains(episode));
+        self.running.retain(|episode| self.left.contains(episode));
         results
     }
 }
@@ -126,14 +130,14 @@ mod tests {
     fn lines_are_read_once_they_are_complete() {
         let (_guard, dir) = campaign_dir();
         let mut assignment = Assignment::new(&dir, 1, [1, 2]);
-        assert!(episodes(&mut assignment).is_empty() && assignment.running.is_none());
+        assert!(episodes(&mut assignment).is_empty() && assignment.running.is_empty());
         let text = format!("{STARTS}{}", result(1, "passed"));
         write(&dir, "1", &text[..text.len() - 3]);
         assert!(episodes(&mut assignment).is_empty());
-        assert_eq!((assignment.running, assignment.has_results), (Some(1), false));
+        assert_eq!((&assignment.running, assignment.has_results), (&BTreeSet::from([1]), false));
         write(&dir, "1", &text);
         assert_eq!(episodes(&mut assignment), [1]);
-        assert_eq!((assignment.running, assignment.left.len()), (None, 1));
+        assert_eq!((assignment.running.len(), assignment.left.len()), (0, 1));
         assert!(episodes(&mut assignment).is_empty());
     }
 

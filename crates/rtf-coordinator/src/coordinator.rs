@@ -130,7 +130,10 @@ impl<'a, P: Pool> Coordinator<'a, P> {
         if self.is_stopped || self.judgement.is_final {
             return Ok(());
         }
-        let lists = episodes_of(&self.ledger.take(self.pool.free()), self.episodes);
+        let mut lists = episodes_of(&self.ledger.take(self.pool.free()), self.episodes);
+        for episode in lists.iter_mut().flatten() {
+            episode.alone = self.ledger.runs_alone(episode.id);
+        }
         self.pool.start(lists).await
     }
 
@@ -166,9 +169,14 @@ impl<'a, P: Pool> Coordinator<'a, P> {
             self.stop(TERM).await;
         }
         let ending = worker::ending(assignment.worker, code);
-        if let Some(episode) = assignment.running.filter(|_| !is_stopped) {
-            let (outcome, reason) = (Some(EpisodeOutcome::Error), Some(ending.clone()));
-            self.record(EpisodeLine { episode, outcome, reason, ..EpisodeLine::default() })?;
+        match assignment.running.first() {
+            _ if is_stopped => {}
+            Some(episode) if assignment.running.len() == 1 => {
+                let (outcome, reason) = (Some(EpisodeOutcome::Error), Some(ending.clone()));
+                let episode = *episode;
+                self.record(EpisodeLine { episode, outcome, reason, ..EpisodeLine::default() })?;
+            }
+            _ => self.ledger.lose(&assignment.running),
         }
         self.ledger.give_back(assignment.left);
         self.failed_starts = match assignment.has_results || is_stopped {

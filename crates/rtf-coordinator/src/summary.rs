@@ -52,6 +52,10 @@ pub fn print(
         if bench > 0 {
             writeln!(out, "  errors and collapses of the bench: {bench}")?;
         }
+        let lost: u32 = ledger.episodes().iter().map(|episode| episode.lost).sum();
+        if lost > 0 {
+            writeln!(out, "  lost with others in a process that ended, and repeated: {lost}")?;
+        }
         if let Some(rate) = &judgement.rate {
             let (value, low, high) = (rate.value, rate.low, rate.high);
             let (interval, confidence) = interval(campaign);

@@ -19,3 +19,5 @@ pub mod run;
 pub mod signal;
 mod unbuffered;
 pub mod verify;
+
+pub use plan_texts::refers_to_episode;

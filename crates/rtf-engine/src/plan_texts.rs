@@ -1,10 +1,35 @@
 //! Substitutes references in the texts of a plan.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use rtf_plan::plan::{
     FixtureBody, HookBody, PluginPlan, Probe, ProbeKind, ProbePlans, ProcessPlan, SuitePlan,
 };
+use rtf_plan::suite::episode_reference;
+
+/// Whether a text of a suite contains a parameter of a campaign.
+#[must_use]
+pub fn refers_to_episode(plan: &SuitePlan) -> bool {
+    let finder = EpisodeFinder::default();
+    finder.suite(&mut plan.clone());
+    finder.0.get()
+}
+
+/// Finds references, and replaces none.
+#[derive(Default)]
+struct EpisodeFinder(Cell<bool>);
+
+impl Substitution for EpisodeFinder {
+    fn is_in(&self, text: &str) -> bool {
+        self.0.set(self.0.get() || episode_reference::mentions(text));
+        false
+    }
+
+    fn expand(&self, text: &str) -> String {
+        text.to_owned()
+    }
+}
 
 /// Replaces references of one kind.
 pub trait Substitution {

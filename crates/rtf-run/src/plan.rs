@@ -11,6 +11,7 @@ use rtf_plan::plan::{self, Plan, PlanDraft, PlanOutcome};
 use rtf_plan::select::{self, Selected, Selection, Shard, ShardBy, select};
 use rtf_plan::suite::{SourceMap, SourceText};
 
+use crate::campaign::episodes;
 use crate::debug::DebugRequest;
 use crate::diagnostics::{self, count};
 use crate::error::Failure;
@@ -56,11 +57,7 @@ pub fn plan_debugged(
         draft(request, |draft| verify::verify(draft, verify::DEFAULT_LIMIT));
     let Some(mut plan) = plan else { return Err(diagnostics::refuse(&problems, &sources)) };
     set_repetition(&mut plan, &request.manifest);
-    if let ([suite], false) = (plan.suites.as_mut_slice(), request.episodes.is_empty()) {
-        suite.episodes = request.episodes.iter().cloned().collect();
-        suite.awaits_episodes = request.episode_stream.is_some();
-        suite.refers_to_values = true;
-    }
+    episodes::add(&mut plan, request)?;
     debug.map(|debug| debug.prepare(&mut plan)).transpose()?;
     let selected_from = if plan.tests as usize == total { 0 } else { total };
     Ok(Planned {

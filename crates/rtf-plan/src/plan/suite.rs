@@ -139,6 +139,7 @@ pub(super) fn plan_direct_plugins(
             tags: Vec::new(),
             combination: None,
             expected: None,
+            slots: None,
             cases: None,
             cases_in_programs: None,
             was: None,

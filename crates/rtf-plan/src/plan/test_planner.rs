@@ -141,6 +141,7 @@ impl<'p, 'a, 'c> TestPlanner<'p, 'a, 'c> {
             learn: test.learn,
             learned: Vec::new(),
             expected: known_failure.map(|it| Box::new(known_failure::expect(&it, today))),
+            slots: test.slots.map(|slots| slots.value),
             cases: None,
             cases_in_programs,
         });

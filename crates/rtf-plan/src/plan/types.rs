@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
+use rtf_model::protocol::EpisodeSlots;
 use rtf_model::{
     Episode, ExpectedFailure, FixtureId, HookId, LearnedLimits, Location, Parameter, SuiteId,
     SuitePrepared, TestId, Trigger,
@@ -248,6 +249,8 @@ pub struct TestPlan {
     /// Set before the run starts.
     pub learned: Vec<LearnedLimits>,
     pub expected: Option<Box<ExpectedFailure>>,
+    /// Of a test that runs many episodes: how.
+    pub slots: Option<EpisodeSlots>,
     /// The cases that it runs; `None` for all.
     pub cases: Option<Box<CaseSelection>>,
     /// For a test of another framework, whose host runs cases in programs.

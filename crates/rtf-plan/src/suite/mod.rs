@@ -13,6 +13,7 @@ mod document;
 mod duration;
 mod env;
 pub mod episode_reference;
+mod episode_test;
 mod fault;
 mod fault_quantity;
 mod fault_types;

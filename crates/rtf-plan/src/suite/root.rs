@@ -9,8 +9,8 @@ use super::source_file::SUITE_ROOTS;
 use super::test::{self, TestDefaults};
 use super::{
     DeclaredIsolation, DeclaredMiddleware, DeclaredSuite, ReferenceUser, SourceText, Spanned,
-    SuiteSettings, TestSettings, clock, env, fault, fixture, hook, monitor, read_document,
-    reference, requires, signal_source,
+    SuiteSettings, TestSettings, clock, env, episode_test, fault, fixture, hook, monitor,
+    read_document, reference, requires, signal_source,
 };
 
 /// Parses the text of a suite file and adds every problem to `problems`.
@@ -97,6 +97,7 @@ fn read_suite(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> DeclaredSui
     }
     suite.isolate.ports = reader.ports.names();
     suite.fixture_references = std::mem::take(&mut reader.fixture_references);
+    episode_test::check(reader, &suite);
     // An unknown element may be a misspelt test, and is reported as unknown.
     let may_be_test = |node: &Node<'_, '_>| {
         node.has_tag_name("test") || !schema::SUITE.elements.contains(&node.tag_name().name())

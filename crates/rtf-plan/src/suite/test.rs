@@ -9,8 +9,8 @@ use super::reader::ElementReader;
 use super::schema::{self, check};
 use super::{
     AfterCollapse, DeclaredCases, DeclaredLimits, DeclaredPlugin, DeclaredTest, ForkPoint, Leaks,
-    Retries, Span, Spanned, TestIsolation, TestSettings, env, fault, known_failure, learn, matrix,
-    monitor, reference,
+    Retries, Span, Spanned, TestIsolation, TestSettings, env, episode_test, fault, known_failure,
+    learn, matrix, monitor, reference,
 };
 
 /// The defaults that a suite declares for its tests.
@@ -50,12 +50,15 @@ pub(super) fn read(
         own_domain,
         ..inherited_settings(reader, node, defaults.settings)
     };
+    let slots = episode_test::read(reader, node);
+    let settings = if slots.is_some() { episode_test::settings(settings) } else { settings };
     Some(DeclaredTest {
         span: ElementReader::tag(node),
         name: reader.word(node, "name"),
         was: reader.word(node, "was").map(|was| was.value),
         limits: DeclaredLimits { case: cases.timeout, ..limits },
         settings,
+        slots,
         cases: cases.declared.map(Box::new),
         tags: values(reader.words(node, "tags")),
         env: env::read(reader, node),

@@ -5,6 +5,7 @@ use std::time::Duration;
 use jiff::Timestamp;
 use jiff::civil::Date;
 use rtf_model::Verdict;
+use rtf_model::protocol::EpisodeSlots;
 
 use super::{
     Combination, DeclaredEnvelope, DeclaredFault, DeclaredFixture, DeclaredHook, DeclaredMatrix,
@@ -151,6 +152,8 @@ pub struct DeclaredTest {
     /// The limits, including those of the suite.
     pub limits: DeclaredLimits,
     pub settings: TestSettings,
+    /// Of a test that runs many episodes: how.
+    pub slots: Option<Spanned<EpisodeSlots>>,
     /// The attributes about its cases; `None` if it has none of them.
     pub cases: Option<Box<DeclaredCases>>,
     /// The tags of the test itself.

@@ -2,6 +2,7 @@
 
 pub mod arrays;
 pub mod directory;
+pub mod episodes;
 pub mod judged;
 mod ranking;
 pub mod report;

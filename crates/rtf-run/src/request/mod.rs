@@ -88,6 +88,8 @@ pub struct TestsRequest {
     pub episodes: Vec<Episode>,
     /// Further episodes, which arrive while the suite runs.
     pub episode_stream: Option<EpisodeStream>,
+    /// The number of slots of a test that runs many episodes, instead of that in its suite.
+    pub slots: Option<u32>,
     /// Problems that prevent nothing.
     pub warnings: Vec<Diagnostic>,
 }
@@ -103,6 +105,7 @@ impl TestsRequest {
             shard: None,
             episodes: Vec::new(),
             episode_stream: None,
+            slots: None,
             warnings: Vec::new(),
         }
     }

@@ -44,11 +44,15 @@ pub struct CampaignRunArgs {
     #[arg(short, long, value_name = "N", value_parser = jobs_parser())]
     pub workers: Option<NonZeroU16>,
 
+    /// Run N episodes at a time in each worker, instead of the `slots` of the test
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub slots: Option<u32>,
+
     #[command(flatten)]
     pub cluster: ClusterArgs,
 
     /// Continue an earlier campaign, whose results are in the directory DIR
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["file", "profile", "set"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["file", "profile", "set", "slots"])]
     #[arg(conflicts_with_all = ["executor", "shards", "args", "licenses", "image", "claim", "patch"])]
     pub resume: Option<PathBuf>,
 

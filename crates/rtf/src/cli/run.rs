@@ -72,6 +72,11 @@ pub struct RunArgs {
     #[arg(conflicts_with_all = ["episode", "rerun"])]
     pub episodes: Option<PathBuf>,
 
+    /// Run N episodes at a time, instead of the `slots` of the test
+    #[arg(help_heading = SELECTION, long, value_name = "N")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub slots: Option<u32>,
+
     /// List the selected tests without running them
     #[arg(help_heading = SELECTION, long)]
     pub dry_run: bool,

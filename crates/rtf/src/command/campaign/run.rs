@@ -162,7 +162,7 @@ fn begin(args: &CampaignRunArgs) -> Result<Started, Failure> {
     let file = args.file.as_deref().unwrap_or(Path::new(""));
     let loaded = campaign::load(file)?;
     loaded.print_warnings()?;
-    let (mut description, plan) = describe(&loaded, file, &args.profile)?;
+    let (mut description, plan) = describe(&loaded, file, &args.profile, args.slots)?;
     description.jobs = jobs(args, &plan)?;
     description.start = Some(CampaignStart::find(&loaded, file, &description.working_dir));
     let parent = args.results.results.join("campaigns");
@@ -177,7 +177,7 @@ pub fn describe_search(
     file: &Path,
     profile: &ProfileArgs,
 ) -> Result<Description, Failure> {
-    let (description, _) = describe(loaded, file, profile)?;
+    let (description, _) = describe(loaded, file, profile, None)?;
     Ok(Description { is_search: true, ..description })
 }
 
@@ -186,19 +186,23 @@ fn describe(
     loaded: &LoadedCampaign,
     file: &Path,
     profile: &ProfileArgs,
+    slots: Option<u32>,
 ) -> Result<(Description, Arc<Plan>), Failure> {
     let mut request = request::tests_of_suite(&loaded.suite, profile)?;
     request.set_episodes(loaded.suite.clone(), loaded.episodes.episodes.clone());
+    request.slots = slots;
     let planned = plan::plan(&request)?;
     planned.print_warnings()?;
     let working_dir = request.options.runner.current_dir;
+    let mut options = profile.to_options();
+    options.extend(slots.map(|slots| format!("--slots={slots}").into()));
     let description = Description {
         name: loaded.name.clone(),
         file: working_dir.join(file),
         suite: working_dir.join(&loaded.suite),
         working_dir,
         repeats: loaded.campaign.repeats,
-        options: profile.to_options(),
+        options,
         is_search: false,
         jobs: None,
         start: None,

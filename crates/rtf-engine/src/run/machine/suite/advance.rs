@@ -39,7 +39,8 @@ impl SuiteMachine<'_> {
         }
         if self.end_reason.is_none() {
             self.scheduler.begin_round(cx.now());
-            if self.scheduler.is_done() && self.episodes.any_left() && !self.next_episode(cx) {
+            if self.scheduler.is_done() && self.episodes.any_round_left() && !self.next_episode(cx)
+            {
                 return;
             }
         }

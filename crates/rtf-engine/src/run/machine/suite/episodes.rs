@@ -8,6 +8,7 @@ use rtf_model::{Episode, EpisodeStarted, EventKind};
 use super::SuiteMachine;
 use crate::run::machine::context::Context;
 use crate::run::machine::io::Deadline;
+use crate::run::machine::test::EpisodeSource;
 use rtf_plan::plan::SuitePlan;
 
 /// Without episodes, a suite runs once.
@@ -18,6 +19,8 @@ pub(super) struct Episodes<'p> {
     arrived: VecDeque<Episode>,
     /// Whether further ones may arrive.
     is_open: bool,
+    /// Whether a test runs many of them at a time, in one round of the suite.
+    is_batch: bool,
     running: Option<u64>,
     /// Whether the fixtures are used up by the running episode.
     is_ending: bool,
@@ -29,14 +32,15 @@ impl<'p> Episodes<'p> {
             left: plan.episodes.iter(),
             arrived: VecDeque::new(),
             is_open: plan.awaits_episodes,
+            is_batch: plan.tests.iter().any(|test| test.slots.is_some()),
             running: None,
             is_ending: false,
         }
     }
 
-    /// Whether an episode follows, or may follow.
-    pub fn any_left(&self) -> bool {
-        self.any_known() || self.is_open
+    /// Whether another round with an episode follows, or may follow.
+    pub fn any_round_left(&self) -> bool {
+        !self.is_batch && self.any_left()
     }
 
     fn any_known(&self) -> bool {
@@ -67,14 +71,37 @@ impl<'p> Episodes<'p> {
     }
 }
 
+impl EpisodeSource for Episodes<'_> {
+    fn peek(&self) -> Option<&Episode> {
+        self.left.as_slice().first().or(self.arrived.front())
+    }
+
+    fn take(&mut self) -> Option<Episode> {
+        self.left.next().cloned().or_else(|| self.arrived.pop_front())
+    }
+
+    fn any_left(&self) -> bool {
+        self.any_known() || self.is_open
+    }
+}
+
 impl SuiteMachine<'_> {
-    /// Begins the next episode, if there is one.
+    /// Sends episodes to the test that runs many of them.
+    pub(super) fn hand_out_episodes(&mut self, cx: &mut Context<'_>) {
+        if self.episodes.is_batch {
+            let episodes = &mut self.episodes;
+            self.scheduler.runs_mut().for_each(|run| run.hand_out(episodes, cx));
+        }
+    }
+
+    /// Begins the next round with an episode, if there is one.
     pub(super) fn begin_episode(&mut self, cx: &mut Context<'_>) {
-        let episodes = &mut self.episodes;
-        let next = episodes.left.next().cloned().or_else(|| episodes.arrived.pop_front());
-        let Some(episode) = next else { return };
+        if self.episodes.is_batch {
+            return;
+        }
+        let Some(episode) = self.episodes.take() else { return };
         (self.episodes.running, self.episodes.is_ending) = (Some(episode.id), false);
-        self.scheduler.shared_host.serves_episodes = self.episodes.any_left();
+        self.scheduler.shared_host.serves_episodes = self.episodes.any_round_left();
         cx.begin_episode(episode.clone());
         let suite = self.plan.id;
         cx.emit(EventKind::EpisodeStarted(EpisodeStarted { suite, episode }));

@@ -138,9 +138,12 @@ impl<'p> SuiteMachine<'p> {
         self.take_early_reports(&mut cx);
         self.advance(&mut cx);
         self.take_early_reports(&mut cx);
+        self.hand_out_episodes(&mut cx);
         (self.last_host, self.values, self.questions) = (last_host, values, questions);
         #[cfg(debug_assertions)]
-        let continues = self.is_started && !self.is_finished && !self.episodes.is_waiting();
+        let awaits_episodes = self.episodes.is_waiting() || self.scheduler.awaits_episodes();
+        #[cfg(debug_assertions)]
+        let continues = self.is_started && !self.is_finished && !awaits_episodes;
         #[cfg(debug_assertions)]
         self.invariant.check(&effects[begin..], continues);
     }

@@ -118,6 +118,12 @@ impl<'p> Scheduler<'p> {
         self.active.iter_mut().filter_map(|active| active.run.as_mut())
     }
 
+    /// Whether a running test waits for episodes that have not arrived.
+    #[cfg(debug_assertions)]
+    pub fn awaits_episodes(&self) -> bool {
+        self.runs().any(TestRun::awaits_episodes)
+    }
+
     /// Whether a running test needs readings of the simulated clock.
     pub fn follows_clock(&self) -> bool {
         self.runs().any(TestRun::follows_clock)

@@ -225,13 +225,24 @@ impl TestRun<'_> {
             let what = format!("started case {} after case {last}", start.case);
             return self.on_protocol_error(what, cx);
         }
+        let is_episode = match self.start_episode(&mut start, cx.now()) {
+            Ok(is_episode) => is_episode,
+            Err(what) => return self.on_protocol_error(what, cx),
+        };
+        let cases = &mut self.cases;
         cases.started += 1;
         start.case = CaseId(cases.started);
         start.parent = cases.open(start.parent);
         if start.name.trim().is_empty() {
             start.name = format!("case {}", start.case);
         }
-        let (name, is_repeated) = cases.name(&start);
+        let (name, is_repeated) = match is_episode {
+            // Its name is its id.
+            true => {
+                (CaseName { host_name: String::new(), name: start.name.clone(), attempt: 1 }, false)
+            }
+            false => cases.name(&start),
+        };
         (start.name, start.earlier_attempts) = (name.name.clone(), name.attempt - 1);
         let parent = start.parent.and_then(|id| cases.get_mut(id));
         let path = parent.map_or(start.name.clone(), |it| format!("{}/{}", it.path, start.name));
@@ -299,6 +310,9 @@ impl TestRun<'_> {
         self.evidence.open_case = self.cases.open.last().map(|open| (open.id, open.path.clone()));
         let Judgement { verdict, reason, .. } = judge(&self.evidence, self.phase);
         let ended = self.evidence.stopped.is_some() || verdict == Verdict::Crashed;
+        // Of several episodes, it is unknown which one ended the test: none has a result.
+        let is_lost = self.slots.as_ref().is_some_and(|slots| slots.are_several_open());
+        let verdict = if ended && is_lost { Verdict::Interrupted } else { verdict };
         let mut innermost = HashMap::new();
         while let Some(open) = self.cases.open.last() {
             let has_problem = open.first_problem.is_some() || open.inner_problem.is_some();
@@ -354,6 +368,7 @@ impl TestRun<'_> {
     ) {
         let Some(index) = self.cases.open.iter().rposition(|open| open.id == case) else { return };
         let mut open = self.cases.open.remove(index);
+        self.slots.iter_mut().for_each(|slots| slots.end(case, cx.now()));
         let (test, phase) = (self.plan.id, self.phase);
         let mut problem = open.take_problem();
         let rerun = matches!(result, CaseResult::Attempt(..));

@@ -135,6 +135,7 @@ fn plugin_of(
         // The task of the process fills in the marker.
         end_marker: plan.settings.shared.then(String::new),
         parameters: plan.parameters().to_vec(),
+        episodes: plan.slots,
         cases: match request.carried {
             Some(carried) => carried.selectors(),
             None => plan.cases.as_ref().map(|cases| cases.selectors.clone()).unwrap_or_default(),

@@ -6,6 +6,7 @@ mod cases;
 pub mod host;
 mod notifications;
 mod questions;
+mod slots;
 mod stop;
 mod stopwatch;
 mod verdict;
@@ -26,6 +27,8 @@ use host::{HostChoice, TestRequest};
 use questions::{ENDED, OpenQuestion};
 use rtf_plan::plan::{SuitePlan, TestPlan};
 use rtf_process::codec::INITIALIZE;
+pub use slots::EpisodeSource;
+use slots::Slots;
 use stop::StopStep;
 use stopwatch::Stopwatch;
 use verdict::AttemptState;
@@ -61,6 +64,8 @@ pub struct TestRun<'p> {
     left: Vec<LeakedProcess>,
     output: OutputCapture,
     cases: OpenCases,
+    /// Of a test that runs many episodes: those that its host has.
+    slots: Option<Box<Slots>>,
     /// Its questions that wait for an answer.
     questions: Vec<OpenQuestion>,
     /// The runner reads its messages more slowly.
@@ -107,6 +112,7 @@ impl<'p> TestRun<'p> {
             left: Vec::new(),
             output: OutputCapture::new(Source::Test(plan.id)),
             cases: OpenCases::new(plan),
+            slots: plan.slots.map(|slots| Box::new(Slots::new(slots))),
             questions: Vec::new(),
             is_throttled: false,
             selects_cases: false,
@@ -188,6 +194,10 @@ impl<'p> TestRun<'p> {
                 self.selects_cases = initialized.selects_cases;
                 if needs_support && !initialized.selects_cases {
                     let reason = format!("{} cannot select cases", initialized.host);
+                    self.stop(StopCause::Protocol, reason, cx);
+                }
+                if self.slots.is_some() && !initialized.runs_episodes {
+                    let reason = format!("{} cannot run a test with `slots`", initialized.host);
                     self.stop(StopCause::Protocol, reason, cx);
                 }
             }

@@ -71,6 +71,10 @@ impl TestRun<'_> {
             return;
         }
         let limits = &self.plan.limits;
+        if phase == Phase::Run && self.slots.is_some() {
+            // Each episode has a limit.
+            return self.set_limit(limits.run, cx);
+        }
         let limit = match phase {
             Phase::Setup => limits.setup,
             Phase::Run => limits.run,

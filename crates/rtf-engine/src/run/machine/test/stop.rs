@@ -172,6 +172,9 @@ impl TestRun<'_> {
             return format!("{} did not end {}", self.step_name(), stopwatch.backstop_reason(now));
         }
         let limits = &self.plan.limits;
+        if let (Phase::Run, Some(slots)) = (self.phase, &self.slots) {
+            return slots.timeout_reason(limits.run);
+        }
         match self.phase {
             Phase::Load => format!("the plug-in was not loaded within {:?}", limits.load),
             Phase::Setup => format!("set-up did not end within {:?}", limits.setup),

@@ -160,7 +160,8 @@ impl TestRun<'_> {
         self.close_cases(cx);
         let mut judgement = judge(&self.evidence, self.phase);
         let leak = leak_problem(self.plan.settings.leaks, &self.left);
-        let late_problem = leak.or_else(|| self.cases.not_run_problem());
+        let unfinished = || self.slots.as_ref().and_then(|slots| slots.problem());
+        let late_problem = leak.or_else(|| self.cases.not_run_problem()).or_else(unfinished);
         if let (Verdict::Passed, Some(problem)) = (judgement.verdict, late_problem) {
             (judgement.verdict, judgement.reason) = (Verdict::Error, Some(problem));
         }

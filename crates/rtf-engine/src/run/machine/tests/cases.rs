@@ -39,6 +39,7 @@ impl World<'_> {
             reason,
             duration_us: None,
             rerun: false,
+            episode: None,
         });
     }
 

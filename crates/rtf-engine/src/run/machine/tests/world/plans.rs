@@ -98,6 +98,7 @@ fn test(index: usize) -> TestPlan {
         tags: Vec::new(),
         combination: None,
         expected: None,
+        slots: None,
         cases: None,
         cases_in_programs: None,
         was: None,
