@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 use std::sync::{MutexGuard, PoisonError};
 
 use rtf_model::protocol::Notification;
-use rtf_model::{CaseEpisode, CaseId, CaseStart, Episode, EpisodeEnd, Outcome, Phase};
+use rtf_model::{CaseEpisode, CaseId, CaseStart, Episode, EpisodeEnd, Location, Outcome, Phase};
 
 use super::{AttemptSettings, CaseError, Cases, OpenCase, with_innermost, with_open};
 
@@ -18,10 +18,12 @@ const OBSERVATION_LIMIT: usize = 64;
 pub struct EpisodeResult {
     /// The outcome, unless a problem that was reported in the episode is worse.
     pub outcome: Outcome,
-    /// Why it did not pass; empty if the messages of the episode contain it.
+    /// Why it did not pass, without effect otherwise; empty if the messages of the episode contain it.
     pub reason: String,
     /// Its steps, simulated time and first observation.
     pub end: EpisodeEnd,
+    /// Where the plug-in finishes it, for an error.
+    pub location: Option<Location>,
 }
 
 /// An episode that has started and not finished.
@@ -116,9 +118,10 @@ impl Cases {
         if self.is_forked_child() || self.is_abandoned.load(Ordering::Relaxed) {
             return Ok(());
         }
-        let EpisodeResult { outcome, reason, end } = result;
+        let EpisodeResult { outcome, reason, end, .. } = result;
         let (outcome, reason) = match skip_reason {
             Some(reason) if outcome == Outcome::Passed => (Outcome::Skipped, Some(reason)),
+            _ if outcome == Outcome::Passed => (outcome, None),
             _ => (outcome, Some(reason).filter(|reason| !reason.is_empty())),
         };
         let finished = |reason| Notification::CaseFinished {

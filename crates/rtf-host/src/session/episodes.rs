@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::sync::PoisonError;
 
 use rtf_model::Episode;
-use rtf_model::protocol::{EpisodeSlots, Request};
+use rtf_model::protocol::{EpisodeSlots, Notification, Request};
 
 use super::{Session, SessionState};
 use crate::EpisodeResult;
@@ -121,17 +121,15 @@ impl Session {
 
     /// Finishes an episode. False after an error that was reported.
     pub fn finish_episode(&self, id: u64, result: EpisodeResult) -> bool {
-        let stopping = self.interrupted();
-        let finished = self
-            .0
-            .cases
-            .finish_episode(id, result, stopping, |finished| self.notify_case(finished));
-        let is_finished = self.allowed(finished).is_some();
-        if is_finished {
-            let mut state = self.state();
-            state.episodes.taken = state.episodes.taken.saturating_sub(1);
+        let (is_stopping, location) = (self.interrupted(), result.location.clone());
+        let send = |finished: &Notification| self.notify_case(finished);
+        if let Err(error) = self.0.cases.finish_episode(id, result, is_stopping, send) {
+            self.error(error.to_string(), location);
+            return false;
         }
-        is_finished
+        let mut state = self.state();
+        state.episodes.taken = state.episodes.taken.saturating_sub(1);
+        true
     }
 
     pub(super) fn begin_episodes(&self, slots: Option<EpisodeSlots>) {

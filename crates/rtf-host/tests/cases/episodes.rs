@@ -17,7 +17,12 @@ pub fn take(session: &Session) -> Episode {
 }
 
 pub fn passed() -> EpisodeResult {
-    EpisodeResult { outcome: Outcome::Passed, reason: String::new(), end: EpisodeEnd::default() }
+    EpisodeResult {
+        outcome: Outcome::Passed,
+        reason: String::new(),
+        end: EpisodeEnd::default(),
+        location: None,
+    }
 }
 
 /// Waits until no episode follows.
@@ -46,8 +51,12 @@ fn episodes_finish_in_any_order_with_what_the_test_knows() {
                 time_us: Some(4_240_000),
                 first_observation: Some("9f86".to_owned()),
             };
-            let result =
-                EpisodeResult { outcome: Outcome::Failed, reason: "slipped".to_owned(), end };
+            let result = EpisodeResult {
+                outcome: Outcome::Failed,
+                reason: "slipped".to_owned(),
+                end,
+                location: None,
+            };
             assert!(session.finish_episode(second.id, result));
             assert!(session.finish_episode(first.id, passed()));
             let timed_out = EpisodeResult { outcome: Outcome::TimedOut, ..passed() };
