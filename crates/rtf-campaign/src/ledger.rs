@@ -171,6 +171,21 @@ mod tests {
     use EpisodeOutcome::{Collapsed, Error, Failed, Passed};
 
     #[test]
+    fn lost_episodes_and_those_of_the_bench_run_alone() {
+        let mut ledger = Ledger::new(4, 2);
+        ledger.take(1);
+        ledger.record(4, Error, None);
+        ledger.lose(&BTreeSet::from([1, 2, 9]));
+        ledger.give_back([1, 2, 3]);
+        assert_eq!(
+            [1, 2, 3, 4, 9].map(|id| ledger.runs_alone(id)),
+            [true, true, false, true, false]
+        );
+        assert_eq!(ledger.take(1), [vec![1, 2, 3, 4]], "a lost one is no repetition of the bench");
+        assert!(!ledger.is_bench_broken() && ledger.episodes()[0].bench == 0);
+    }
+
+    #[test]
     fn episodes_are_assigned_in_turn_and_given_back_in_order() {
         let mut ledger = Ledger::new(5, 2);
         assert_eq!(ledger.take(2), [vec![1, 3, 5], vec![2, 4]]);

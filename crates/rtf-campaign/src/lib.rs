@@ -6,6 +6,7 @@
 //! - [`analysis`]: where a campaign fails.
 //! - [`comparison`]: which versions differ; [`results_file`]: versions that other programs ran;
 //!   [`plan`](mod@plan): how many episodes a comparison needs.
+//! - [`invariance`]: whether results depend on how episodes are run.
 //! - [`ranges`]: the values that parameters can have.
 //! - [`shrink`](mod@shrink): the smallest change from nominal parameters that fails.
 //! - [`ledger`]: which episodes have results, and which are still to be run.
@@ -20,6 +21,7 @@ pub mod comparison;
 pub mod episodes;
 pub mod file;
 pub mod forecast;
+pub mod invariance;
 pub mod judgement;
 pub mod ledger;
 pub mod plan;

@@ -36,6 +36,8 @@ pub struct Coordinator<'a, P> {
     failure: Option<Failure>,
     /// Whether the workers were signalled to stop.
     is_stopped: bool,
+    /// Whether each worker runs its last episode first.
+    is_reversed: bool,
     /// The end of the campaign's budget.
     deadline: Option<Instant>,
     progress: Progress,
@@ -71,9 +73,17 @@ impl<'a, P: Pool> Coordinator<'a, P> {
             early_end: None,
             failure: None,
             is_stopped: false,
+            is_reversed: false,
             deadline: campaign.budget.map(|budget| Instant::now() + budget),
             progress: Progress::new(),
         })
+    }
+
+    /// Prints nothing; each worker may run its last episode first.
+    #[must_use]
+    pub fn for_comparison(mut self, is_reversed: bool) -> Self {
+        (self.is_reversed, self.progress) = (is_reversed, Progress::silent());
+        self
     }
 
     /// Runs the episodes until the claim is decided, all of them have results, or the user stops.
@@ -133,6 +143,9 @@ impl<'a, P: Pool> Coordinator<'a, P> {
         let mut lists = episodes_of(&self.ledger.take(self.pool.free()), self.episodes);
         for episode in lists.iter_mut().flatten() {
             episode.alone = self.ledger.runs_alone(episode.id);
+        }
+        if self.is_reversed {
+            lists.iter_mut().for_each(|list| list.reverse());
         }
         self.pool.start(lists).await
     }

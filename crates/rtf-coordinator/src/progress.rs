@@ -20,6 +20,7 @@ pub struct Progress {
     every: Duration,
     printed_at: Instant,
     printed: usize,
+    is_silent: bool,
 }
 
 impl Progress {
@@ -28,7 +29,12 @@ impl Progress {
     pub fn new() -> Self {
         let is_terminal = io::stdout().is_terminal();
         let every = if is_terminal { Duration::from_millis(200) } else { Duration::from_secs(10) };
-        Self { is_terminal, every, printed_at: Instant::now(), printed: 0 }
+        Self { is_terminal, every, printed_at: Instant::now(), printed: 0, is_silent: false }
+    }
+
+    /// Prints nothing.
+    pub fn silent() -> Self {
+        Self { is_silent: true, is_terminal: false, ..Self::new() }
     }
 
     /// Prints an episode that did not pass.
@@ -38,7 +44,7 @@ impl Progress {
             return Ok(());
         };
         self.printed += 1;
-        if self.printed > PRINTED {
+        if self.printed > PRINTED || self.is_silent {
             return Ok(());
         }
         let parameters = parameters(episode);
@@ -64,7 +70,7 @@ impl Progress {
 
     /// Prints the numbers, if it is time.
     pub fn numbers(&mut self, ledger: &Ledger) -> Result<(), Failure> {
-        if self.printed_at.elapsed() < self.every {
+        if self.is_silent || self.printed_at.elapsed() < self.every {
             return Ok(());
         }
         self.printed_at = Instant::now();

@@ -37,6 +37,7 @@ pub fn command(
     args.extend(["--episodes".into(), list.into()]);
     args.extend(description.options.iter().map(Into::into));
     let mut command = spawn_self::command(args).map_err(Failure::internal)?;
+    command.envs(description.variables.iter().map(|(name, value)| (name, value)));
     command.current_dir(&description.working_dir);
     command.stdout(output.try_clone().map_err(Failure::internal)?).stderr(Stdio::from(output));
     Ok(command)

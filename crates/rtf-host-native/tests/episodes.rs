@@ -142,6 +142,10 @@ fn limits_end_an_episode_that_is_not_done() {
     assert_eq!(all(&ran, "case-finished")[1]["episode"], counted);
     let ran = run(&library, json!({"slots": 1}), &[500]);
     assert_eq!(ends(&ran), ["1 passed"]);
+    let silent = build("uncounted.cpp", "void episode(rtf::Episode &) override {}");
+    let ran = run(&silent, json!({"slots": 1, "max_steps": 3}), &[1]);
+    let unknown = "its number of steps is unknown, but the suite has `max-steps`";
+    assert_eq!(ends(&ran), [format!("1 error {unknown}")]);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock};
 
-use rtf_model::protocol::{CaseSelector, Notification};
+use rtf_model::protocol::{CaseSelector, EpisodeSlots, Notification};
 use rtf_model::{CaseId, CaseStart, Outcome, Phase};
 use rustix::process::{Pid, getpid};
 
@@ -63,8 +63,8 @@ struct AttemptSettings {
     attempt: u64,
     phase: Option<Phase>,
     selectors: Vec<CaseSelector>,
-    /// Whether the top-level cases are episodes.
-    has_slots: bool,
+    /// With slots, the top-level cases are episodes.
+    slots: Option<EpisodeSlots>,
 }
 
 impl AttemptSettings {
@@ -111,7 +111,7 @@ impl Default for Cases {
 
 impl Cases {
     /// Begins an attempt, which the calling thread runs.
-    pub(crate) fn begin_attempt(&self, selectors: &[CaseSelector], has_slots: bool) {
+    pub(crate) fn begin_attempt(&self, selectors: &[CaseSelector], slots: Option<EpisodeSlots>) {
         let attempt = ATTEMPTS.fetch_add(1, Ordering::Relaxed);
         RUNS.set(attempt);
         with_open(Vec::clear);
@@ -122,7 +122,7 @@ impl Cases {
         self.episodes().clear();
         let mut settings = self.settings.write().unwrap_or_else(PoisonError::into_inner);
         let selectors = selectors.to_vec();
-        *settings = AttemptSettings { attempt, phase: None, selectors, has_slots };
+        *settings = AttemptSettings { attempt, phase: None, selectors, slots };
     }
 
     /// Ends the attempt: its threads report no more cases.
@@ -166,7 +166,7 @@ impl Cases {
             self.push(opened(parent.or_else(|| self.main_case())));
             return Ok(true);
         }
-        if settings.has_slots && parent.is_none() {
+        if settings.slots.is_some() && parent.is_none() {
             return Err(CaseError::OutsideEpisode);
         }
         if is_stopping {

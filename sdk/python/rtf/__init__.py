@@ -17,15 +17,27 @@ is in :mod:`rtf.host`.
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from rtf._episode import Episode
+    from rtf._episode_test import EpisodeTest
     from rtf._fixture import FixtureManager, Test
     from rtf._stop import Error
     from rtf._test import TestCase
 
-__all__ = ["Error", "FixtureManager", "Test", "TestCase", "__version__"]
+__all__ = [
+    "Episode",
+    "EpisodeTest",
+    "Error",
+    "FixtureManager",
+    "Test",
+    "TestCase",
+    "__version__",
+]
 
 __version__ = "0.1.0"
 
 _MODULES = {
+    "Episode": "rtf._episode",
+    "EpisodeTest": "rtf._episode_test",
     "Error": "rtf._stop",
     "FixtureManager": "rtf._fixture",
     "Test": "rtf._fixture",

@@ -41,6 +41,9 @@ class Case:
         if session.phase != "run":
             session.error("cases are allowed in `run` only")
             return False
+        if session.task.episodes is not None and session.cases.innermost() is None:
+            session.error("a case of an episode test belongs to an episode: `with episode:`")
+            return False
         is_stopped = session.request.stop.is_set()
         return not is_stopped and session.task.selects(session.cases.path_of(self._name))
 

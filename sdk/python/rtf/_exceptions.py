@@ -16,18 +16,23 @@ def report(session: Session, problem: BaseException) -> None:
 
     An `rtf.Error` is reported by its text alone.
     """
-    place = _location.of_exception(problem.__traceback__, session.task.file)
+    text, place = described(problem, session.task.file)
+    session.error(text, location=place)
+
+
+def described(problem: BaseException, file: str) -> tuple[str, dict[str, object] | None]:
+    """Return the text about an exception, and its line in the plug-in `file`."""
+    place = _location.of_exception(problem.__traceback__, file)
     if isinstance(problem, Error):
-        session.error(str(problem), location=place)
-        return
+        return str(problem), place
     import traceback  # noqa: PLC0415 - slow to import, and most tests raise nothing
 
     reason = "".join(traceback.format_exception_only(type(problem), problem)).strip()
     if isinstance(problem, SyntaxError):
         reason = f"{type(problem).__name__}: {problem.msg}"
-        place = _location.at(problem.filename or session.task.file, problem.lineno or 0)
+        place = _location.at(problem.filename or file, problem.lineno or 0)
     trace = _location.without_host(problem.__traceback__)
     lines = traceback.format_exception(type(problem), problem, trace)
     text = f"{reason}\n{''.join(lines).rstrip()}" if trace else reason
     # The plug-in's own classes go by their names, as those of a program.
-    session.error(text.replace("__mp_main__.", ""), location=place)
+    return text.replace("__mp_main__.", ""), place

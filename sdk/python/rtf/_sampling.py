@@ -60,8 +60,10 @@ class Sampling:
         self._oldest = 0.0
         self._has_failed = False
         self._batches: list[Batch] = []
-        # The batch for the next samples of a signal, by its name.
-        self._open: dict[str, Batch] = {}
+        # The batch for the next samples of a signal, by its name and, in an episode test, the case.
+        self._open: dict[tuple[str, int | None], Batch] = {}
+        # Whether cases have separate times, as the episodes of an episode test.
+        self.is_by_case = False
         self.renew_lock()
 
     def renew_lock(self) -> None:
@@ -83,9 +85,10 @@ class Sampling:
         with self._lock:
             if not self._batches:
                 self._oldest = now
-            batch = self._open.get(signal[0])
+            key = (signal[0], case if self.is_by_case else None)
+            batch = self._open.get(key)
             if batch is None or batch.signal != signal or batch.case != case:
-                batch = self._open[signal[0]] = Batch(signal, case)
+                batch = self._open[key] = Batch(signal, case)
                 self._batches.append(batch)
             batch.points.append((at, value))
             full = len(batch.points) >= BATCH_SAMPLES or len(self._batches) >= BATCH_SAMPLES

@@ -20,14 +20,21 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import NoReturn, Protocol, TypeVar
 
-    from rtf._sampling import Notify, Signal
+    from rtf._episodes import Episodes
+    from rtf._sampling import Signal
     from rtf._task import Task
 
-    class Announce(Protocol):
-        """Announces a phase to the runner; `held` delays it until the next line."""
+    class Channel(Protocol):
+        """Sends lines to the runner."""
 
-        def __call__(self, phase: str, *, held: bool = False) -> None:
-            """Announce it."""
+        def announce(self, phase: str, *, held: bool = False) -> None:
+            """Announce a phase; `held` delays it until the next line."""
+
+        def notify(self, method: str, params: dict[str, object]) -> None:
+            """Send a notification."""
+
+        def send(self, lines: bytes) -> None:
+            """Send encoded lines in one write."""
 
     _Value = TypeVar("_Value")
     # An answer, or `None` and the problem.
@@ -52,6 +59,8 @@ class RequestState:
         self._is_signal_announced = False
         # The ends of questions that threads of the plug-in wait for; `None` is a stop request.
         self._questions: dict[int, SimpleQueue[QuestionEnd | None]] = {}
+        # Episodes that have arrived; `None` is their end, or a stop request.
+        self.episodes: SimpleQueue[list[dict[str, object]] | None] = SimpleQueue()
 
     def record(self, outcome: str, reason: str | None = None) -> None:
         """Record a problem; only the first one counts."""
@@ -80,6 +89,7 @@ class RequestState:
         self.stop.set()
         for end in list(self._questions.values()):
             end.put(None)
+        self.episodes.put(None)
 
     def open_question(self, number: int) -> None:
         """Expect the end of a question."""
@@ -111,23 +121,27 @@ class RequestState:
 class Session:
     """The connection between one plug-in and the runner."""
 
-    def __init__(
-        self, task: Task, request: RequestState, notify: Notify, announce: Announce
-    ) -> None:
-        """Serve `task`; `notify` and `announce` send lines to the runner."""
+    def __init__(self, task: Task, request: RequestState, channel: Channel) -> None:
+        """Serve `task`; `channel` sends lines to the runner."""
         self.task = task
         self.request = request
-        self.sampling = Sampling(notify)
-        self.cases = Cases(self.notify)
+        self.sampling = Sampling(channel.notify)
+        self.cases = Cases(self)
+        # Those of an episode test.
+        self.episodes: Episodes | None = None
         # The announced step of a test; empty in a fixture.
         self.phase = ""
-        self._notify = notify
-        self._announce = announce
+        self._channel = channel
 
     def notify(self, method: str, params: dict[str, object]) -> None:
         """Send a notification, after the samples that were taken before."""
         self.sampling.send()
-        self._notify(method, params)
+        self._channel.notify(method, params)
+
+    def send(self, lines: bytes) -> None:
+        """Send encoded lines, after the samples that were taken before."""
+        self.sampling.send()
+        self._channel.send(lines)
 
     def notify_in_case(self, method: str, params: dict[str, object]) -> None:
         """Send a notification that belongs to the present case, if any."""
@@ -140,7 +154,7 @@ class Session:
         """Announce a phase, after the samples that were taken before."""
         self.sampling.send()
         self.phase = phase
-        self._announce(phase, held=held)
+        self._channel.announce(phase, held=held)
 
     def message(self, kind: str, text: str, **more: object) -> None:
         """Send a message of the plug-in with its location."""
@@ -205,6 +219,8 @@ class Session:
     def plan_cases(self, names: list[str]) -> None:
         """Announce those of the cases that are selected."""
         self.require_setup_or_run("cases are planned in `setup` and `run` only")
+        if self.task.episodes is not None:
+            self.end_with_error("the cases of an episode test are its episodes, which nobody plans")
         self.cases.plan([name for name in names if self.task.selects(name)])
 
     def value_of(self, values: dict[str, _Value], name: str, problem: str) -> _Value:

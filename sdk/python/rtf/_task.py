@@ -31,10 +31,28 @@ class Task:
         values = _objects_of(params, "fixture_values")
         self.fixture_values = {_text_of(one, "name"): _value_of(one, "value") for one in values}
         self.selectors = [Selector(one) for one in _objects_of(params, "cases")]
+        slots = params.get("episodes")
+        self.episodes = None if slots is None else EpisodeSlots(slots)
 
     def selects(self, path: str) -> bool:
         """Whether the case with this path runs."""
         return not self.selectors or any(one.selects(path) for one in self.selectors)
+
+
+class EpisodeSlots:
+    """How an episode test runs its episodes."""
+
+    def __init__(self, params: object) -> None:
+        """Read `{"slots": 64, "max_steps": 500, "max_time_us": 20000000}`."""
+        numbers = params if isinstance(params, dict) else {}
+        slots = _number_of(numbers, "slots")
+        if slots is None:
+            raise TypeError("`episodes` has no `slots`")
+        self.slots = slots
+        # The limits of an episode, in steps and in seconds of simulated time.
+        self.max_steps = _number_of(numbers, "max_steps")
+        micros = _number_of(numbers, "max_time_us")
+        self.max_time = None if micros is None else micros / 1e6
 
 
 class Selector:
@@ -66,6 +84,13 @@ def _objects_of(params: dict[str, object], name: str) -> list[dict[str, object]]
 
 def _texts_of(params: dict[str, object], name: str) -> dict[str, str]:
     return {_text_of(one, "name"): _text_of(one, "value") for one in _objects_of(params, name)}
+
+
+def _number_of(params: dict[str, object], name: str) -> int | None:
+    value = params.get(name)
+    if value is not None and (not isinstance(value, int) or value < 1):
+        raise TypeError(f"`{name}` of `episodes` is not a number from 1")
+    return value
 
 
 def _value_of(params: dict[str, object], name: str) -> object:

@@ -149,6 +149,7 @@ def test_initialize_comes_first_and_names_the_interpreter(tmp_path: Path) -> Non
         "stack": "none",
         "supports_shared": True,
         "selects_cases": True,
+        "runs_episodes": True,
     }
 
 

@@ -28,6 +28,8 @@ pub struct ComparedEpisode {
     pub parameters: Vec<Parameter>,
     /// `None` without a result.
     pub passed: Option<bool>,
+    /// The same text for the same first observation, if it is known.
+    pub first_observation: Option<String>,
     /// Finite values.
     pub values: BTreeMap<MeasurementKey, f64>,
 }

@@ -67,6 +67,7 @@ pub fn read(text: &str) -> Result<Vec<ComparedEpisode>, ResultsProblem> {
 
 fn of_episode(episode: Episode) -> ComparedEpisode {
     ComparedEpisode {
+        first_observation: None,
         id: episode.episode_ix,
         seed: episode.seed,
         parameters: Vec::new(),
@@ -83,6 +84,7 @@ fn of_task(task: &Task) -> impl Iterator<Item = ComparedEpisode> {
         let reward = |rewards: &[Option<f64>]| rewards.get(index).copied().flatten();
         let task_name = format!("{}/{}", task.task_group, task.task_id);
         ComparedEpisode {
+            first_observation: None,
             id: 0,
             seed: None,
             parameters: vec![

@@ -4,8 +4,9 @@
 use std::collections::HashMap;
 use std::sync::atomic::Ordering;
 use std::sync::{MutexGuard, PoisonError};
+use std::time::Duration;
 
-use rtf_model::protocol::Notification;
+use rtf_model::protocol::{EpisodeSlots, Notification};
 use rtf_model::{CaseEpisode, CaseId, CaseStart, Episode, EpisodeEnd, Location, Outcome, Phase};
 
 use super::{AttemptSettings, CaseError, Cases, OpenCase, with_innermost, with_open};
@@ -33,15 +34,54 @@ pub(super) struct OpenEpisode {
     /// How often threads have entered it without leaving it.
     entered: usize,
     skip_reason: Option<String>,
+    has_problem: bool,
+}
+
+impl OpenEpisode {
+    /// Adds what a thread recorded that had entered it.
+    fn merge(&mut self, entry: &mut OpenCase) {
+        self.has_problem |= entry.has_problem;
+        self.skip_reason = self.skip_reason.take().or(entry.skip_reason.take());
+    }
+
+    /// The outcome and its reason.
+    fn judge(self, result: &EpisodeResult, slots: EpisodeSlots) -> (Outcome, Option<String>) {
+        let (outcome, end) = (result.outcome, &result.end);
+        if let Some(limit) = slots.max_steps.filter(|limit| end.steps > Some(*limit)) {
+            return (Outcome::TimedOut, Some(format!("not done after {limit} steps")));
+        }
+        if let Some(limit) = slots.max_time_us.filter(|limit| end.time_us > Some(*limit)) {
+            let limit = Duration::from_micros(limit).as_secs_f64();
+            let reason = format!("not done after {limit} s of simulated time");
+            return (Outcome::TimedOut, Some(reason));
+        }
+        if outcome != Outcome::Passed {
+            return (outcome, Some(result.reason.clone()).filter(|reason| !reason.is_empty()));
+        }
+        let unknown = match (slots.max_steps, slots.max_time_us) {
+            (Some(_), _) if end.steps.is_none() => {
+                "number of steps is unknown, but the suite \
+                 has `max-steps`"
+            }
+            (_, Some(_)) if end.time_us.is_none() => {
+                "simulated time is unknown, but the suite has \
+                 `max-time`"
+            }
+            _ => "",
+        };
+        match self.skip_reason {
+            Some(reason) => (Outcome::Skipped, Some(reason)),
+            None if unknown.is_empty() || self.has_problem => (Outcome::Passed, None),
+            None => (Outcome::Error, Some(format!("its {unknown}"))),
+        }
+    }
 }
 
 impl Cases {
     /// Checks that the calling thread may take an episode.
     pub(crate) fn check_episodes(&self) -> Result<(), CaseError> {
         let settings = self.settings();
-        if !settings.has_slots {
-            return Err(CaseError::NoSlots);
-        }
+        settings.slots.ok_or(CaseError::NoSlots)?;
         check_phase(&settings)?;
         if self.is_forked_child() { Err(CaseError::ForkedEpisode) } else { Ok(()) }
     }
@@ -58,7 +98,8 @@ impl Cases {
         let Some(episode) = next() else { return Ok(None) };
         *started += 1;
         let (case, id) = (CaseId(*started), episode.id);
-        self.episodes().insert(id, OpenEpisode { case, entered: 0, skip_reason: None });
+        let open = OpenEpisode { case, entered: 0, skip_reason: None, has_problem: false };
+        self.episodes().insert(id, open);
         let reference = Some(CaseEpisode { id, seed: 0 });
         let start = CaseStart { episode: reference, ..CaseStart::new(case, id.to_string()) };
         send(&Notification::CaseStarted(start));
@@ -84,14 +125,14 @@ impl Cases {
     pub(crate) fn leave_episode(&self, id: u64) -> Result<(), CaseError> {
         let is_innermost = |last: &mut OpenCase| last.episode == Some(id);
         let left = with_open(|open| open.pop_if(is_innermost)).flatten();
-        let left = left.ok_or(CaseError::EpisodeNotInnermost(id))?;
+        let mut left = left.ok_or(CaseError::EpisodeNotInnermost(id))?;
         let settings = self.settings();
         if left.attempt != settings.attempt {
             return Ok(());
         }
         if let Some(episode) = self.episodes().get_mut(&id) {
             episode.entered -= 1;
-            episode.skip_reason = episode.skip_reason.take().or(left.skip_reason);
+            episode.merge(&mut left);
         }
         self.open.fetch_sub(1, Ordering::Relaxed);
         self.update_main_case(settings.attempt);
@@ -112,18 +153,16 @@ impl Cases {
         if length > OBSERVATION_LIMIT {
             return Err(CaseError::LongObservation(id, length));
         }
-        let (case, skip_reason) = self.close_episode(settings.attempt, id)?;
+        let slots = settings.slots.ok_or(CaseError::NoSlots)?;
+        let closed = self.close_episode(settings.attempt, id)?;
+        let case = closed.case;
         self.update_main_case(settings.attempt);
         self.is_abandoned.fetch_or(is_stopping, Ordering::Relaxed);
         if self.is_forked_child() || self.is_abandoned.load(Ordering::Relaxed) {
             return Ok(());
         }
-        let EpisodeResult { outcome, reason, end, .. } = result;
-        let (outcome, reason) = match skip_reason {
-            Some(reason) if outcome == Outcome::Passed => (Outcome::Skipped, Some(reason)),
-            _ if outcome == Outcome::Passed => (outcome, None),
-            _ => (outcome, Some(reason).filter(|reason| !reason.is_empty())),
-        };
+        let (outcome, reason) = closed.judge(&result, slots);
+        let end = result.end;
         let finished = |reason| Notification::CaseFinished {
             case,
             outcome: Some(outcome),
@@ -138,25 +177,23 @@ impl Cases {
         Ok(())
     }
 
-    /// Removes an episode from the open ones. Returns its case, and why it is skipped.
-    fn close_episode(&self, attempt: u64, id: u64) -> Result<(CaseId, Option<String>), CaseError> {
+    /// Removes an episode from the open ones.
+    fn close_episode(&self, attempt: u64, id: u64) -> Result<OpenEpisode, CaseError> {
         let mut episodes = self.episodes();
         let open = episodes.get(&id).ok_or(CaseError::EpisodeNotOpen(id))?;
         let own = with_open(|open| count_entries(open, attempt, id)).unwrap_or(Ok(0))?;
         if open.entered > own {
             return Err(CaseError::EpisodeEntered(id));
         }
-        let removed = episodes.remove(&id).ok_or(CaseError::EpisodeNotOpen(id))?;
+        let mut closed = episodes.remove(&id).ok_or(CaseError::EpisodeNotOpen(id))?;
         drop(episodes);
-        let own_reason = with_open(|open| {
-            let entries = open.iter_mut().filter(|entry| entry.is_in(attempt, id));
-            let reasons = entries.map(|entry| {
+        with_open(|open| {
+            for entry in open.iter_mut().filter(|entry| entry.is_in(attempt, id)) {
+                closed.merge(entry);
                 entry.case = None;
-                entry.skip_reason.take()
-            });
-            reasons.fold(None, Option::or)
+            }
         });
-        Ok((removed.case, removed.skip_reason.or(own_reason.flatten())))
+        Ok(closed)
     }
 
     /// The ids of the open episodes, in order.

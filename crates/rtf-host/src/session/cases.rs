@@ -47,7 +47,7 @@ impl Session {
 
     /// Begins an attempt of a test with these selected cases or slots, on the calling thread.
     pub(crate) fn begin_attempt(&self, cases: &[CaseSelector], slots: Option<EpisodeSlots>) {
-        self.0.cases.begin_attempt(cases, slots.is_some());
+        self.0.cases.begin_attempt(cases, slots);
         self.begin_episodes(slots);
     }
 

@@ -257,3 +257,45 @@ fn a_wait_of_the_plugin_does_not_hold_results() {
     runner.send(&json!({"method": "interrupt", "params": {"reason": "Ctrl-C"}}));
     assert_eq!(runner.finish().1["outcome"], "interrupted");
 }
+
+#[test]
+fn more_than_a_limit_is_timed_out_and_an_unknown_number_an_error() {
+    let script: Script = in_run!(session, {
+        let finish = |steps, time_us, outcome: Outcome| {
+            let end = EpisodeEnd { steps, time_us, first_observation: None };
+            session.finish_episode(
+                take(session).id,
+                EpisodeResult { outcome, reason: "slipped".to_owned(), end, location: None },
+            );
+        };
+        finish(Some(500), Some(2_500_000), Outcome::Passed);
+        finish(Some(501), Some(1), Outcome::Failed);
+        finish(Some(1), Some(2_500_001), Outcome::Passed);
+        finish(None, Some(1), Outcome::Passed);
+        finish(Some(1), None, Outcome::Passed);
+        finish(None, None, Outcome::Failed);
+        let id = take(session).id;
+        session.enter_episode(id);
+        send(session, MessageKind::Failure, "it moves");
+        session.leave_episode(id);
+        session.finish_episode(id, passed());
+        take_none(session);
+    });
+    let settings = json!({"slots": 1, "max_steps": 500, "max_time_us": 2_500_000});
+    let mut runner = Runner::start_with_limits(script, &settings);
+    runner.send_episodes(1..=7);
+    runner.end_episodes();
+    let (lines, _) = runner.finish();
+    let ends = lines.iter().filter_map(|line| line.strip_prefix("end "));
+    let ends: Vec<_> = ends.map(|end| end.split(" {").next().unwrap()).collect();
+    let expected = [
+        "1 passed",
+        "2 timed-out not done after 500 steps",
+        "3 timed-out not done after 2.5 s of simulated time",
+        "4 error its number of steps is unknown, but the suite has `max-steps`",
+        "5 error its simulated time is unknown, but the suite has `max-time`",
+        "6 failed slipped",
+        "7 passed",
+    ];
+    assert_eq!(ends, expected);
+}

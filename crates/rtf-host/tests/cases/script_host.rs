@@ -76,8 +76,13 @@ impl Runner {
 
     /// Starts a test with slots, and returns when its `run` has begun.
     pub fn start_episodes(script: Script, slots: u32) -> Self {
+        Self::start_with_limits(script, &json!({"slots": slots}))
+    }
+
+    /// Does the same with these settings of `episodes`.
+    pub fn start_with_limits(script: Script, settings: &Value) -> Self {
         let mut runner = Self::start(script);
-        let params = json!({"file": "f", "name": "T", "episodes": {"slots": slots}});
+        let params = json!({"file": "f", "name": "T", "episodes": settings});
         runner.send(&json!({"id": 1, "method": "run-test", "params": params}));
         while runner.line()["params"]["phase"] != "run" {}
         runner

@@ -44,11 +44,7 @@ pub(super) fn read(
         }
         return None;
     };
-    let slots = reader.number(node, "slots", 1)?;
-    if slots > MOST_SLOTS {
-        let message = format!("`slots` is {slots}, and can be at most {MOST_SLOTS}");
-        reader.report(reader.error("too-many-slots", span, message));
-    }
+    let slots = reader.number_in(node, "slots", 1..=MOST_SLOTS);
     for (name, why) in EXCLUDED {
         exclude(reader, node, name, why);
     }
@@ -58,7 +54,7 @@ pub(super) fn read(
             reader.report(reader.error("not-in-episode-test", ElementReader::tag(child), message));
         }
     }
-    let max_time_us = max_time.map(microseconds);
+    let (slots, max_time_us) = (slots?, max_time.map(microseconds));
     Some(Spanned::new(EpisodeSlots { slots, max_steps, max_time_us }, span))
 }
 

@@ -1,5 +1,6 @@
 //! Reads the text and the attribute values of elements, and reports invalid ones.
 
+use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use roxmltree::Node;
@@ -149,12 +150,21 @@ impl ElementReader<'_> {
 
     /// Reads a whole number from `min` to one million.
     pub fn number(&mut self, node: Node<'_, '_>, name: &str, min: u32) -> Option<u32> {
-        const MAX: u32 = 1_000_000;
+        self.number_in(node, name, min..=1_000_000)
+    }
+
+    pub fn number_in(
+        &mut self,
+        node: Node<'_, '_>,
+        name: &str,
+        range: RangeInclusive<u32>,
+    ) -> Option<u32> {
         let attribute = self.attribute(node, name)?;
         let number = attribute.value.trim().parse::<u32>().ok();
-        let valid = number.filter(|number| (min..=MAX).contains(number));
+        let valid = number.filter(|number| range.contains(number));
         if valid.is_none() {
-            let expected = format!("is not a whole number from {min} to {MAX}");
+            let (min, max) = (range.start(), range.end());
+            let expected = format!("is not a whole number from {min} to {max}");
             self.wrong(name, &attribute, &expected, None);
         }
         valid

@@ -6,6 +6,7 @@ mod bench;
 mod clock;
 mod depends;
 mod envelopes;
+mod episode_tests;
 mod faults;
 mod fixture_values;
 mod frameworks;

@@ -55,6 +55,9 @@ pub struct Description {
     pub repeats: u32,
     /// Further options of `rtf run`: the profile and parameters.
     pub options: Vec<String>,
+    /// Further variables of the workers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub variables: Vec<(String, String)>,
     /// Whether its episodes were asked for one after the other, by a search: then there is no claim.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_search: bool,

@@ -1,10 +1,16 @@
 //! Adds the episodes of a campaign to the plan of its suite.
 
+use std::sync::Arc;
+
 use rtf_model::{Episode, Parameter};
 use rtf_plan::plan::{Plan, SuitePlan};
+use rtf_plan::suite::episode_reference;
 
 use crate::error::Failure;
 use crate::request::TestsRequest;
+
+/// Begins the names of the variables with parameters.
+const PARAMETER_PREFIX: &str = "RTF_PARAM_";
 
 /// Adds the episodes, or one to a suite whose test with slots runs without a campaign.
 pub fn add(plan: &mut Plan, request: &TestsRequest) -> Result<(), Failure> {
@@ -44,6 +50,10 @@ fn prepare(suite: &mut SuitePlan, request: &TestsRequest) -> Result<(), Failure>
     for slots in suite.tests.iter_mut().filter_map(|test| test.slots.as_mut()) {
         slots.slots = request.slots.unwrap_or(slots.slots);
     }
+    // Its process outlives the episodes.
+    let is_variable = |name: &str| name.starts_with(PARAMETER_PREFIX);
+    Arc::make_mut(&mut suite.env)
+        .retain(|(name, value)| !(is_variable(name) && episode_reference::mentions(value)));
     if rtf_engine::refers_to_episode(suite) {
         let error = format!(
             "suite `{}` has a test with `slots`, and a parameter of the campaign in a text",

@@ -114,6 +114,7 @@ fn episodes_of(dir: &CampaignDir) -> Result<Vec<ComparedEpisode>, Failure> {
             && !outcome.is_of_bench()
             && episode.values.is_empty()
         {
+            episode.first_observation.clone_from(&line.first_observation);
             episode.values = measured(line);
         }
     }

@@ -23,6 +23,8 @@ pub enum CampaignVerb {
     Search(CampaignSearchArgs),
     /// Compare versions with the first one: the rates, by condition, and measurements
     Compare(CampaignCompareArgs),
+    /// Find out whether results depend on how the episodes are run
+    Invariance(CampaignInvarianceArgs),
     /// Print how many episodes a comparison needs to find a difference
     Plan(CampaignPlanArgs),
     /// Print the list of episodes, as JSON lines
@@ -155,6 +157,42 @@ pub struct CampaignSearchArgs {
     /// Run up to N episodes in parallel, on workers with separate fixtures
     #[arg(short, long, value_name = "N", default_value = "1", value_parser = jobs_parser())]
     pub workers: NonZeroU16,
+
+    /// Time limit for all tear-downs and hooks after a signal; then rtf kills all
+    /// leftover processes
+    #[arg(long, value_name = "DURATION", default_value = "60s", value_parser = parse_duration)]
+    pub shutdown_timeout: Duration,
+
+    #[command(flatten)]
+    pub profile: ProfileArgs,
+
+    #[command(flatten)]
+    pub results: ResultsArgs,
+}
+
+/// Options of `rtf campaign invariance`.
+#[derive(Debug, Args)]
+pub struct CampaignInvarianceArgs {
+    /// The campaign (.xml)
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+
+    /// Run at most the first N episodes, each several times
+    #[arg(long, value_name = "N", default_value = "200")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..))]
+    pub episodes: u32,
+
+    /// Run N episodes at a time the first time, instead of the `slots` of the test
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub slots: Option<u32>,
+
+    /// The probability of any wrong claim about results that are not the same twice
+    #[arg(long, value_name = "P", default_value = "0.05", value_parser = parse_probability)]
+    pub alpha: f64,
+
+    /// Output format
+    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    pub format: CampaignFormat,
 
     /// Time limit for all tear-downs and hooks after a signal; then rtf kills all
     /// leftover processes

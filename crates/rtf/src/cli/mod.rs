@@ -23,8 +23,8 @@ use clap::{Args, Command, CommandFactory, Parser, Subcommand, ValueEnum};
 use rtf_plan::suite::parse_duration;
 
 pub use campaign::{
-    CampaignCompareArgs, CampaignFormat, CampaignPlanArgs, CampaignRunArgs, CampaignSearchArgs,
-    CampaignShowArgs, CampaignShowFormat, CampaignShrinkArgs, CampaignVerb,
+    CampaignCompareArgs, CampaignFormat, CampaignInvarianceArgs, CampaignPlanArgs, CampaignRunArgs,
+    CampaignSearchArgs, CampaignShowArgs, CampaignShowFormat, CampaignShrinkArgs, CampaignVerb,
 };
 pub use debug::{DebugArgs, RunVerbArgs};
 pub use doctor::{DoctorArgs, DoctorFormat};

@@ -62,6 +62,10 @@ class Channel:
         """Announce a phase; `held` if no code of the plug-in runs in it."""
         self._write(_PHASE % phase.encode(), held=held)
 
+    def send(self, lines: bytes) -> None:
+        """Send encoded lines in one write."""
+        self._write(lines)
+
     def notify(self, method: str, params: dict[str, object]) -> None:
         """Send a notification. A text that is too long for a line is sent in parts."""
         data = encode({"jsonrpc": "2.0", "method": method, "params": params})

@@ -8,7 +8,12 @@ import sys
 
 from rtf.host.predecessor import CLASS_NAME
 
-_KINDS = {"TestCase": "test", "FixtureManager": "fixture"}
+_KINDS = {
+    "TestCase": "test",
+    "EpisodeTest": "test",
+    "VectorTest": "test",
+    "FixtureManager": "fixture",
+}
 
 
 def check_files(files: list[str]) -> None:

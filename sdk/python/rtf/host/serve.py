@@ -157,6 +157,8 @@ class Reader:
             self._interrupt(str(params.get("reason") or "asked to stop"), params.get("request"))
         elif message.get("method") == "question-closed":
             self._close_question(message.get("params"))
+        elif message.get("method") in {"episodes", "end-of-episodes"}:
+            self._add_episodes(message.get("params"))
         elif message.get("id") is not None:
             request = Request(message)
             with self._lock:
@@ -173,6 +175,13 @@ class Reader:
             for request in waiting:
                 text = None if answer is None else str(answer)
                 request.state.close_question(params["question"], text, problem)
+
+    def _add_episodes(self, params: object) -> None:
+        arrived = params.get("episodes") if isinstance(params, dict) else None
+        with self._lock:
+            waiting = self._open[:1]
+        for request in waiting:
+            request.state.episodes.put(arrived)
 
     def _interrupt(self, reason: str, number: object) -> None:
         with self._lock:
@@ -290,12 +299,13 @@ class Host:
             "stack": stack,
             "supports_shared": True,
             "selects_cases": True,
+            "runs_episodes": True,
         }
 
     def _enter(self, task: Task, request: Request) -> Session:
         if not task.end_marker:
             self._channel.flush()
-        session = Session(task, request.state, self._channel.notify, self._channel.announce)
+        session = Session(task, request.state, self._channel)
         _session.enter(session)
         return session
 

@@ -32,7 +32,7 @@ _interruptible: list[Session] = []
 def run_test(session: Session) -> Answer:
     """Load a test, set it up, run it and tear it down."""
     test = _load(session, TestCase)
-    if test is not None:
+    if test is not None and _fits(session, test):
         has_setup = _has_own(test, "setup")
         session.announce("setup", held=not has_setup)
         session.sampling.begin()
@@ -40,13 +40,36 @@ def run_test(session: Session) -> Answer:
             _step(session, lambda: test.setup(session.task.args), "setup")
         if session.request.has_passed():
             session.announce("run")
-            _step(session, test.run, "run")
+            _step(session, _run_of(session, test), "run")
         has_tear_down = _has_own(test, "tearDown")
         session.announce("tear-down", held=not has_tear_down)
         if has_tear_down:
             _tear_down(session, test)
         yarp_network.finish()
     return _answer(session)
+
+
+def _fits(session: Session, test: TestCase) -> bool:
+    """Whether the suite treats the test as what it is, an episode test or not."""
+    settings, name = session.task.episodes, type(test).__name__
+    # Imported by an episode test.
+    module = sys.modules.get("rtf._episode_test")
+    is_episode_test = module is not None and isinstance(test, module.EpisodeTest)
+    if is_episode_test and settings is None:
+        session.error(f'`{name}` is an episode test, which needs `slots`: `<test slots="1">`')
+    elif settings is not None and not is_episode_test:
+        session.error(f"the test has `slots`, but `{name}` is not derived from `rtf.EpisodeTest`")
+    elif settings is not None:
+        from rtf import _episodes  # noqa: PLC0415 - other tests do not need it
+
+        session.episodes = _episodes.Episodes(session, settings)
+        session.sampling.is_by_case = True
+    return is_episode_test == (settings is not None)
+
+
+def _run_of(session: Session, test: TestCase) -> Callable[[], object]:
+    episodes = session.episodes
+    return test.run if episodes is None else lambda: episodes.run(test.run)
 
 
 def _has_own(test: TestCase, step: str) -> bool:

@@ -14,6 +14,24 @@ pub const TABLES: &[Table] = &[
 
 const FILES: &[(&str, &str, &str)] = &[
     (
+        "<suite><test slots='4'>A.lua</test><test name='b'>A.lua</test></suite>",
+        "give the other tests a suite of their own",
+        "<suite><test slots='4'>A.lua</test></suite>\n== t.xml\n\
+         <suite name='t'><test>A.lua</test></suite>\n== command line\ns.xml\nt.xml",
+    ),
+    (
+        "<suite timeout='9s'><test slots='4'>A.lua</test></suite>",
+        "`timeout` of the test is the limit of each episode",
+        "<suite><test slots='4' timeout='9s'>A.lua</test></suite>",
+    ),
+    (
+        "<suite clock='ros'><fixture name='sim' type='process'><command>./sim</command></fixture>\
+         <test slots='4' timeout='9s'>A.lua</test></suite>",
+        "`max-time` limits an episode in simulated time",
+        "<suite><fixture name='sim' type='process'><command>./sim</command></fixture>\
+         <test slots='4' max-time='9s'>A.lua</test></suite>",
+    ),
+    (
         "<!DOCTYPE suite><suite><test>A.lua</test></suite>",
         "remove the `<!DOCTYPE …>`",
         "<suite><test>A.lua</test></suite>",

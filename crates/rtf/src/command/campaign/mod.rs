@@ -2,6 +2,7 @@
 
 mod compare;
 mod comparison_text;
+mod invariance;
 mod plan;
 mod run;
 mod search;
@@ -23,6 +24,7 @@ pub fn run(verb: CampaignVerb, matches: &ArgMatches) -> VerbResult {
     match verb {
         CampaignVerb::Run(args) => run::run(*args, verb_matches),
         CampaignVerb::Compare(args) => compare::run(&args),
+        CampaignVerb::Invariance(args) => invariance::run(args, verb_matches),
         CampaignVerb::Plan(args) => plan::run(&args),
         CampaignVerb::Search(args) => search::run(args, verb_matches),
         CampaignVerb::Shrink(args) => shrink::run(args, verb_matches),

@@ -182,7 +182,7 @@ pub fn describe_search(
 }
 
 /// Checks the suite of a campaign, and describes what its workers run. Returns the plan, too.
-fn describe(
+pub fn describe(
     loaded: &LoadedCampaign,
     file: &Path,
     profile: &ProfileArgs,
@@ -203,6 +203,7 @@ fn describe(
         working_dir,
         repeats: loaded.campaign.repeats,
         options,
+        variables: Vec::new(),
         is_search: false,
         jobs: None,
         start: None,

@@ -21,6 +21,7 @@ mod questions;
 mod retries;
 mod sequence;
 mod shared;
+mod slots;
 mod soak;
 mod stop_and_skip;
 mod stopped_trees;
