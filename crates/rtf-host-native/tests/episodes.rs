@@ -26,20 +26,19 @@ fn start(library: &std::path::Path, settings: Value) -> Host {
     host
 }
 
-fn send_episodes(host: &mut Host, ids: &[u64]) {
+fn episodes(ids: &[u64]) -> Value {
     let parameters = json!({"payload": "1.2", "side": "left"});
     let episodes: Vec<Value> = ids
         .iter()
         .map(|id| json!({"id": id, "seed": id + 100, "parameters": parameters}))
         .collect();
-    host.send(json!({"method": "episodes", "params": {"episodes": episodes}}));
+    json!({"method": "episodes", "params": {"episodes": episodes}})
 }
 
 /// Runs a test with these episodes to its end.
 fn run(library: &std::path::Path, settings: Value, ids: &[u64]) -> Ran {
     let mut host = start(library, settings);
-    send_episodes(&mut host, ids);
-    host.send(json!({"method": "end-of-episodes", "params": {}}));
+    host.send_all(&[episodes(ids), json!({"method": "end-of-episodes", "params": {}})]);
     host.finish()
 }
 
@@ -265,7 +264,7 @@ fn a_stop_request_ends_a_step_and_a_wait() {
         ),
     ] {
         let mut host = start(&build(name, members), json!({"slots": 1}));
-        send_episodes(&mut host, &[1]);
+        host.send(episodes(&[1]));
         host.wait_for("stepping");
         host.send(json!({"method": "interrupt", "params": {"reason": "Ctrl-C"}}));
         let ran = host.finish();
@@ -357,7 +356,8 @@ fn a_host_without_episodes_is_an_error_with_its_version() {
             take();
         }
     "#;
-    let ran = run(&build("old-episodes.cpp", members), json!({"slots": 1}), &[]);
+    let settings = json!({"episodes": {"slots": 1}});
+    let ran = run_test(&build("old-episodes.cpp", members), settings);
     let error = "error: this rtf is too old for episodes: its plug-in interface is 1.4";
     assert_eq!(ran.texts(), [error]);
 }
