@@ -144,12 +144,12 @@ class Cases:
         """Attribute what other threads report to a case that this thread continues."""
         self._innermost_of_run = case
 
-    def finish_episode(self, number: int, fields: bytes) -> None:
+    def finish_episode(self, number: int, fields: bytes, *, held: bool) -> None:
         """Send the end of an episode; `fields` are encoded, each with a comma before it."""
         is_stopped = self._is_abandoned or self._session.request.stop.is_set()
         if not is_stopped and not self.is_forked():
             line = b'{"jsonrpc": "2.0", "method": "case-finished", "params": {"case": %d%b}}\n'
-            self._session.send(line % (number, fields))
+            self._session.send(line % (number, fields), held=held)
 
     def has_open_inner(self, number: int) -> bool:
         """Whether a case in an episode is open, on any thread."""

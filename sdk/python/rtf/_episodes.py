@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections import deque
-
 from rtf import _exceptions, _text
+from rtf._arrivals import Arrivals
 from rtf._episode import Episode
-from rtf._stop import CriticalAssertionEnded, Interrupted, Skipped, StepEnded
+from rtf._stop import CriticalAssertionEnded, Error, Interrupted, Skipped, StepEnded
 
 # As `typing.TYPE_CHECKING`, without the time that its import takes.
 TYPE_CHECKING = False
@@ -27,42 +26,44 @@ class Episodes:
         """Expect episodes of the runner."""
         self.settings = settings
         self.open: dict[int, Episode] = {}
+        # Whether several episodes end within moments: then their results are sent in one write.
+        self.is_holding = False
         self._session = session
-        self._arrived: deque[dict[str, Any]] = deque()
-        self._has_ended = False
+        self._arrivals = Arrivals(session.request)
 
     def take(self, most: int | None, *, wait: bool) -> list[Episode]:
         """Start episodes that have arrived."""
         session = self._session
         if session.phase != "run" or session.cases.is_forked():
             raise RuntimeError("episodes can be taken in `run` of the test only")
-        free = self.settings.slots - len(self.open)
+        arrivals = self._arrivals
+        while True:
+            with arrivals.lock:
+                arrivals.update()
+                count = self._count(most, wait=wait)
+                if not wait or arrivals.episodes or arrivals.have_ended:
+                    count = min(count, len(arrivals.episodes))
+                    taken = [arrivals.episodes.popleft() for _ in range(count)]
+                    arrivals.wake_next()
+                    return self._start(taken) if taken else []
+                arrivals.announce_wait()
+            session.sampling.send()
+            self.flush()
+            arrivals.wait()
+
+    def _count(self, most: int | None, *, wait: bool) -> int:
+        """Return how many episodes may start, at most."""
+        slots = self.settings.slots
+        free = slots - len(self.open)
         count = free if most is None else min(most, free)
-        if count < 1:
-            if not wait:
-                return []
-            slots = self.settings.slots
+        if wait and count < 1:
             what = f"`most` is {most}" if free > 0 else f"none of {slots} slots is free"
             raise ValueError(f"`take` would wait without an end: {what}")
-        queue = session.request.episodes
-        while not self._has_ended and (not queue.empty() or (wait and not self._arrived)):
-            self._receive()
-        self._raise_if_stopped()
-        taken = [self._arrived.popleft() for _ in range(min(count, len(self._arrived)))]
-        return self._start(taken) if taken else []
+        return max(count, 0)
 
-    def _receive(self) -> None:
-        arrived = self._session.request.episodes.get()
-        if arrived is not None:
-            self._arrived.extend(arrived)
-            return
-        self._raise_if_stopped()
-        self._has_ended = True
-
-    def _raise_if_stopped(self) -> None:
-        request = self._session.request
-        if request.stop.is_set():
-            raise Interrupted(request.stop_reason)
+    def flush(self) -> None:
+        """Send held results."""
+        self._session.flush()
 
     def _start(self, taken: list[dict[str, Any]]) -> list[Episode]:
         numbers = self._session.cases.start_episodes([one["id"] for one in taken])
@@ -116,7 +117,8 @@ class Episodes:
         if self.open.pop(episode.case, None) is None:
             raise RuntimeError(f"episode {episode.id} belongs to another test")
         episode.is_finished = True
-        cases.finish_episode(episode.case, episode.encoded_end(outcome, reason))
+        end = episode.encoded_end(outcome, reason)
+        cases.finish_episode(episode.case, end, held=self.is_holding)
 
     def limit_reason(self, steps: int | None, time: float | None) -> str:
         """Return why an episode that takes so many steps, or so long, has timed out, if it has."""
@@ -147,9 +149,13 @@ class Episodes:
             self._end_open("`run` ended while the episode was open")
             text = f"`run` ended while {len(ids)} episodes were open: {shown}"
             self._session.end_with_error(text)
-        if not self._has_ended and not self._arrived:
-            self._receive()
-        if not self._has_ended:
+        arrivals = self._arrivals
+        arrivals.update()
+        if not arrivals.have_ended and not arrivals.episodes:
+            arrivals.announce_wait()
+            arrivals.wait()
+            arrivals.update()
+        if arrivals.episodes or not arrivals.have_ended:
             text = "`run` ended, but more episodes follow until `take` returns an empty list"
             self._session.end_with_error(text)
 
@@ -165,6 +171,6 @@ class Episodes:
 def summary(problem: BaseException) -> str:
     """Return an exception in one line."""
     text = str(problem).partition("\n")[0]
-    if isinstance(problem, StepEnded):
+    if isinstance(problem, (StepEnded, Error)):
         return f"`{text}`"
     return f"{type(problem).__name__}: {text}" if text else type(problem).__name__

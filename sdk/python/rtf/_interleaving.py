@@ -62,7 +62,7 @@ class Running:
         self.context = copy_context()
 
     def advance(self) -> bool:
-        """Run until the next step; whether the episode goes on."""
+        """Run until the next step; whether the episode continues."""
         cases = _session.current().cases
         try:
             if self._generator is not None:
@@ -118,7 +118,7 @@ class Running:
     def _finish(self, result: Any, steps: int | None) -> None:
         if hasattr(result, "__await__"):
             result.close()
-            raise TypeError("`episode` is a coroutine, which nobody runs: use a generator")
+            raise TypeError("`episode` is a coroutine, expected a generator")
         if self._episode.is_finished and result is None:
             return
         if isinstance(result, str):

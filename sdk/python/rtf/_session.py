@@ -33,8 +33,11 @@ if TYPE_CHECKING:
         def notify(self, method: str, params: dict[str, object]) -> None:
             """Send a notification."""
 
-        def send(self, lines: bytes) -> None:
-            """Send encoded lines in one write."""
+        def send(self, lines: bytes, *, held: bool = False) -> None:
+            """Send encoded lines in one write; `held` delays them until the next line."""
+
+        def flush(self) -> None:
+            """Send held lines."""
 
     _Value = TypeVar("_Value")
     # An answer, or `None` and the problem.
@@ -138,10 +141,14 @@ class Session:
         self.sampling.send()
         self._channel.notify(method, params)
 
-    def send(self, lines: bytes) -> None:
+    def send(self, lines: bytes, *, held: bool = False) -> None:
         """Send encoded lines, after the samples that were taken before."""
         self.sampling.send()
-        self._channel.send(lines)
+        self._channel.send(lines, held=held)
+
+    def flush(self) -> None:
+        """Send held lines."""
+        self._channel.flush()
 
     def notify_in_case(self, method: str, params: dict[str, object]) -> None:
         """Send a notification that belongs to the present case, if any."""
@@ -220,7 +227,9 @@ class Session:
         """Announce those of the cases that are selected."""
         self.require_setup_or_run("cases are planned in `setup` and `run` only")
         if self.task.episodes is not None:
-            self.end_with_error("the cases of an episode test are its episodes, which nobody plans")
+            self.end_with_error(
+                "the cases of an episode test are its episodes, which cannot be planned"
+            )
         self.cases.plan([name for name in names if self.task.selects(name)])
 
     def value_of(self, values: dict[str, _Value], name: str, problem: str) -> _Value:

@@ -38,6 +38,7 @@ class EpisodeRunner:
         self.results: dict[int, Result] = {}
         self.events: list[tuple[str, int]] = []
         self.outside: list[tuple[str, str]] = []
+        self.ids: dict[int, int] = {}
         self.most_open = 0
         self.answer: dict[str, Any] | None = None
         self._open: dict[int, int] = {}
@@ -95,7 +96,7 @@ class EpisodeRunner:
         assert episode not in self.results
         assert params == {"case": self._cases, "name": str(episode), "episode": {"id": episode}}
         self.results[episode] = Result()
-        self._open[params["case"]] = episode
+        self._open[params["case"]] = self.ids[params["case"]] = episode
         self.most_open = max(self.most_open, len(self._open))
         assert len(self._open) <= self.slots
         self.events.append(("start", episode))

@@ -195,7 +195,7 @@ def test_a_limit_of_a_finished_episode(tmp_path: Path) -> None:
         ("one.finish(True); self.take(0)",
          "ValueError: `take` would wait without an end: `most` is 0"),
         ("self.plan_cases(['lift'])",
-         "the cases of an episode test are its episodes, which nobody plans"),
+         "the cases of an episode test are its episodes, which cannot be planned"),
     ],
 )  # fmt: skip
 def test_mistakes_of_a_test(tmp_path: Path, call: str, problem: str) -> None:
@@ -270,6 +270,37 @@ def test_threads_enter_different_episodes(tmp_path: Path) -> None:
         assert result.messages == [("report", f"in {episode}")]
         assert result.inner == ["inner"]
     assert runner.outside == []
+
+
+def test_threads_take_episodes(tmp_path: Path) -> None:
+    body = "import threading\n" + episode_test(
+        "def work(self):\n"
+        "    while episodes := self.take(1):\n"
+        "        with episodes[0] as episode:\n            self.report(episode.id)\n"
+        "        episode.finish()\n"
+        "def run(self):\n"
+        "    threads = [threading.Thread(target=self.work) for _ in range(self.slots)]\n"
+        "    for thread in threads:\n        thread.start()\n"
+        "    self.report('all wait or work')\n"
+        "    for thread in threads:\n        thread.join()\n"
+    )
+    runner = EpisodeRunner(tmp_path, body, slots=4)
+    while not runner.outside:
+        assert runner.read()
+    runner.give(*range(1, 61))
+    while len(runner.events) < 120:
+        assert runner.read()
+    # All threads wait, and are woken.
+    runner.end()
+    runner.finish()
+    assert runner.verdicts() == ["passed"] * 60
+    assert all(it.messages == [("report", str(n))] for n, it in runner.results.items())
+    runner = EpisodeRunner(tmp_path, body, slots=4)
+    while not runner.outside:
+        assert runner.read()
+    runner.host.send("interrupt", {"reason": "enough"})
+    runner.finish()
+    assert runner.answer == {"outcome": "interrupted", "reason": "enough"}
 
 
 def test_episodes_arrive_while_others_run(tmp_path: Path) -> None:
@@ -420,7 +451,7 @@ def test_a_test_without_episode_or_run(tmp_path: Path) -> None:
 def test_a_coroutine_is_an_error(tmp_path: Path) -> None:
     body = "class Arm(rtf.EpisodeTest):\n    async def episode(self, episode):\n        pass\n"
     runner = run_episodes(tmp_path, body, [1])
-    text = "TypeError: `episode` is a coroutine, which nobody runs: use a generator"
+    text = "TypeError: `episode` is a coroutine, expected a generator"
     assert runner.results[1].messages == [("error", text)]
     assert runner.errors == ""
 

@@ -18,6 +18,7 @@ mod bad_suites;
 mod blocked_console;
 mod campaign;
 mod campaign_compare;
+mod campaign_kills;
 mod campaign_search;
 mod campaign_shared_hosts;
 mod case_selection;

@@ -7,6 +7,7 @@ import math
 import os
 import sys
 import threading
+import time
 
 CHANNEL_VARIABLE = "RTF_CHANNEL"
 
@@ -14,6 +15,9 @@ _READ_BYTES = 65536
 
 # The longest line that the runner accepts, its end included.
 LINE_LIMIT = 16 * 1024 * 1024
+
+# Results that are held at least so long are sent with the next one.
+_HELD_SECONDS = 0.05
 
 _PHASE = b'{"jsonrpc": "2.0", "method": "phase", "params": {"phase": "%s"}}\n'
 
@@ -30,10 +34,12 @@ class Channel:
         self._rest = b""
         # Lines that are sent with the next one.
         self._held = b""
+        self._held_since = 0.0
         os.set_inheritable(descriptor, False)  # noqa: FBT003 - the library's signature
         self._renew_lock()
-        # A forked child must not wait for a lock that another thread held.
-        os.register_at_fork(after_in_child=self._renew_lock)
+        # A forked child must neither wait for a lock that another thread held, nor send the held
+        # lines again.
+        os.register_at_fork(before=self.flush, after_in_child=self._renew_lock)
 
     @classmethod
     def from_environment(cls) -> Channel:
@@ -62,9 +68,13 @@ class Channel:
         """Announce a phase; `held` if no code of the plug-in runs in it."""
         self._write(_PHASE % phase.encode(), held=held)
 
-    def send(self, lines: bytes) -> None:
-        """Send encoded lines in one write."""
-        self._write(lines)
+    def send(self, lines: bytes, *, held: bool = False) -> None:
+        """Send encoded lines in one write; `held` if others follow within moments."""
+        if held and not self._held:
+            self._held_since = time.monotonic()
+        elif held and time.monotonic() - self._held_since > _HELD_SECONDS:
+            held = False
+        self._write(lines, held=held)
 
     def notify(self, method: str, params: dict[str, object]) -> None:
         """Send a notification. A text that is too long for a line is sent in parts."""

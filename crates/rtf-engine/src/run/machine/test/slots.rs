@@ -142,6 +142,7 @@ impl TestRun<'_> {
     }
 
     /// Whether it waits for episodes that have not arrived, so that no limit runs.
+    #[cfg(debug_assertions)]
     pub fn awaits_episodes(&self) -> bool {
         let waits = |slots: &Slots| !slots.is_closed && slots.outstanding() == 0;
         self.is_running_episodes() && self.slots.as_deref().is_some_and(waits)
