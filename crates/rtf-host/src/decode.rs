@@ -120,6 +120,7 @@ fn refused(id: Option<u64>, code: i32, message: String) -> Incoming {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rtf_model::Parameter;
     use rtf_model::protocol::{Initialize, Plugin, QuestionEnd, RpcMessage};
 
     fn code(line: &str) -> (Option<u64>, i32) {
@@ -145,6 +146,13 @@ mod tests {
                 answer: Some("yes".into()),
                 problem: None,
             }),
+            Request::Episodes {
+                episodes: vec![
+                    Episode::new(17, 3, vec![Parameter { name: "x".into(), value: "1".into() }]),
+                    Episode { alone: true, ..Episode::new(18, 0, Vec::new()) },
+                ],
+            },
+            Request::EndOfEpisodes {},
             Request::DumpStack {},
         ];
         for request in requests {

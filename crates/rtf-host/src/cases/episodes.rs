@@ -59,20 +59,17 @@ impl OpenEpisode {
             return (outcome, Some(result.reason.clone()).filter(|reason| !reason.is_empty()));
         }
         let unknown = match (slots.max_steps, slots.max_time_us) {
-            (Some(_), _) if end.steps.is_none() => {
-                "number of steps is unknown, but the suite \
-                 has `max-steps`"
-            }
-            (_, Some(_)) if end.time_us.is_none() => {
-                "simulated time is unknown, but the suite has \
-                 `max-time`"
-            }
-            _ => "",
+            (Some(_), _) if end.steps.is_none() => Some(("number of steps", "max-steps")),
+            (_, Some(_)) if end.time_us.is_none() => Some(("simulated time", "max-time")),
+            _ => None,
         };
-        match self.skip_reason {
-            Some(reason) => (Outcome::Skipped, Some(reason)),
-            None if unknown.is_empty() || self.has_problem => (Outcome::Passed, None),
-            None => (Outcome::Error, Some(format!("its {unknown}"))),
+        match (self.skip_reason, unknown) {
+            (Some(reason), _) => (Outcome::Skipped, Some(reason)),
+            (None, Some((number, limit))) if !self.has_problem => {
+                let reason = format!("its {number} is unknown, but the suite has `{limit}`");
+                (Outcome::Error, Some(reason))
+            }
+            _ => (Outcome::Passed, None),
         }
     }
 }

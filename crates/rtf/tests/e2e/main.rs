@@ -36,6 +36,7 @@ mod damaged_journals;
 mod doctor;
 mod documented;
 mod ended_campaigns;
+mod episode_tests_cpp;
 mod faults;
 mod fixture_values;
 mod forked_children;

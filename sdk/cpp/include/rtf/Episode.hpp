@@ -80,16 +80,16 @@ public:
         return own != parameters_.end() ? own->second : std::string(otherwise);
     }
 
-    // Begins a step that takes `dt` of simulated time. False if the limit in steps or in
-    // simulated time is used up: the step is not counted, and the result is `timed-out`. A stop
-    // request ends the test.
+    // Begins a step that takes `dt` of simulated time. False if it would exceed the limit in steps
+    // or in simulated time: the step is not counted, and the result is `timed-out`. A stop request
+    // ends the test.
     bool step(std::chrono::duration<double> dt = std::chrono::duration<double>::zero())
     {
         if (internal::host().interrupted(internal::host().context) != 0) {
             throw internal::Stop{true};
         }
         // Sums of times of steps are not exact; limits have microseconds.
-        const bool no_time = max_time_ > 0 && time_.count() + 0.5e-6 >= max_time_;
+        const bool no_time = max_time_ > 0 && (time_ + dt).count() > max_time_ + 0.5e-6;
         if (no_time || (max_steps_ > 0 && steps_ >= max_steps_)) {
             problem_ = no_time ? internal::number(max_time_) + " s of simulated time"
                                : std::to_string(max_steps_) + " steps";
