@@ -38,6 +38,7 @@ mod doctor;
 mod documented;
 mod ended_campaigns;
 mod episode_tests_bad;
+mod episode_tests_cpp;
 mod episode_tests_python;
 mod faults;
 mod fixture_values;
