@@ -165,7 +165,7 @@ mod tests {
             let words = ["10", "9", "wood"];
             let b = words[id as usize % 3].to_owned();
             let parameters = vec![parameter("b", b), parameter("a", a.to_string())];
-            (Episode { id: id.into(), seed: 0, parameters }, a <= 0.75)
+            (Episode { id: id.into(), seed: 0, parameters, masked: Vec::new() }, a <= 0.75)
         };
         (1..=200).map(episode).collect()
     }

@@ -42,7 +42,7 @@ pub use event::{
     CaseFinished, CaseStart, CaseStarted, Episode, EpisodeStarted, Event, EventKind, ExitStatus,
     ExpectedFailure, FixturePlanned, FixtureProvided, HookPlanned, LeakedProcess, LearnedLimits,
     Output, Parameter, Phase, RunStarted, Significance, Source, StopCause, Stream, SuitePlanned,
-    TestFinished, TestPlanned, Trigger, signal_name, value_text,
+    TestFinished, TestPlanned, Trigger, masked, signal_name, value_text,
 };
 pub use failure_line::{FailureLine, explain_failure};
 pub use fault::{

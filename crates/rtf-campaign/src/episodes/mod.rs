@@ -8,6 +8,7 @@ mod list;
 pub(crate) mod sampler;
 mod sobol;
 pub(crate) mod space;
+mod trials;
 
 use std::path::Path;
 
@@ -70,7 +71,8 @@ pub fn resolve(campaign: &Campaign, resolution: &mut Resolution<'_>) -> Option<E
         let parameters =
             names.zip(values).map(|(name, (value, _))| Parameter { name, value }).collect();
         let seed = seeds.seed(candidate);
-        list.episodes.push(Episode { id: list.episodes.len() as u64 + 1, seed, parameters });
+        let id = list.episodes.len() as u64 + 1;
+        list.episodes.push(Episode { id, seed, parameters, masked: Vec::new() });
     }
     let is_enough = match campaign.episodes {
         Some(_) => list.episodes.len() as u64 == wanted,
@@ -80,7 +82,10 @@ pub fn resolve(campaign: &Campaign, resolution: &mut Resolution<'_>) -> Option<E
         report_constraints(campaign, resolution, (list.episodes.len(), most));
         return None;
     }
-    Some(list)
+    match campaign.versions() {
+        Some(versions) => trials::of_blocks(list, versions, (campaign, resolution)),
+        None => Some(list),
+    }
 }
 
 /// The seeds of candidates.

@@ -5,7 +5,7 @@ use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Parameter;
-use crate::SuiteId;
+use crate::{FixtureProvided, SuiteId};
 
 /// A run of a suite with its parameters.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,6 +20,24 @@ pub struct Episode {
     #[serde(serialize_with = "write_parameters", deserialize_with = "read_parameters")]
     #[cfg_attr(feature = "schema", schemars(with = "std::collections::BTreeMap<String, String>"))]
     pub parameters: Vec<Parameter>,
+    /// Texts that are not shown, because trials are blinded: the versions, the longest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub masked: Vec<String>,
+}
+
+impl Episode {
+    /// Replaces what is not shown.
+    #[must_use]
+    pub fn mask(&self, text: &str) -> String {
+        masked(text, &self.masked)
+    }
+}
+
+/// Replaces each of these texts.
+#[must_use]
+pub fn masked(text: &str, hidden: &[String]) -> String {
+    let hide = |text: String, it: &String| text.replace(it, FixtureProvided::SECRET);
+    hidden.iter().filter(|it| !it.is_empty()).fold(text.to_owned(), hide)
 }
 
 /// An episode starts: what happens in the suite until `episode-finished` belongs to it.

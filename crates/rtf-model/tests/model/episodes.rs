@@ -8,7 +8,7 @@ use rtf_model::{
 };
 
 fn begins(id: u64) -> EventKind {
-    let episode = Episode { id, seed: 7, parameters: Vec::new() };
+    let episode = Episode { id, seed: 7, parameters: Vec::new(), masked: Vec::new() };
     EventKind::EpisodeStarted(EpisodeStarted { suite: SUITE, episode })
 }
 

@@ -106,7 +106,7 @@ fn chosen(page: &mut ConsoleLines, manifest: &Manifest) {
 }
 
 fn episode(page: &mut ConsoleLines, episode: &Episode) {
-    let Episode { id, seed, parameters } = episode;
+    let Episode { id, seed, parameters, .. } = episode;
     let value = |it: &Parameter| format!("{}={}", it.name, it.value);
     let values: Vec<_> = parameters.iter().map(value).collect();
     let text = format!("{id}, seed {seed}: {}", values.join(" "));

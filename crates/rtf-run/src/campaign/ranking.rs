@@ -124,7 +124,12 @@ mod tests {
         for id in 1..=12_u64 {
             let failed = id % 4 == 0;
             let (name, value) = ("payload".to_owned(), id.to_string());
-            episodes.push(Episode { id, seed: 0, parameters: vec![Parameter { name, value }] });
+            episodes.push(Episode {
+                id,
+                seed: 0,
+                parameters: vec![Parameter { name, value }],
+                masked: Vec::new(),
+            });
             let value = Some(f64::from(id as u32) + if failed { error } else { 0.0 });
             let (test, name, unit) = ("Carry".to_owned(), "error".to_owned(), "rad".to_owned());
             let line = EpisodeLine {

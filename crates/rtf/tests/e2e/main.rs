@@ -20,6 +20,7 @@ mod campaign;
 mod campaign_compare;
 mod campaign_search;
 mod campaign_shared_hosts;
+mod campaign_trials;
 mod case_selection;
 mod cases;
 mod chaos;

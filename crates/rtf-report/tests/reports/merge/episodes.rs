@@ -32,7 +32,7 @@ fn worker(episodes: &[u64]) -> Vec<Event> {
         EventKind::SuiteStarted { suite: SUITE },
     ];
     for (repetition, &id) in (1..).zip(episodes) {
-        let episode = Episode { id, seed: 7, parameters: Vec::new() };
+        let episode = Episode { id, seed: 7, parameters: Vec::new(), masked: Vec::new() };
         kinds.push(EventKind::EpisodeStarted(EpisodeStarted { suite: SUITE, episode }));
         kinds.push(EventKind::TestStarted { test: TEST, repetition, attempt: 1 });
         kinds.push(from_json(r#"{"type":"case-started","test":0,"case":1,"name":"joint"}"#));

@@ -30,6 +30,7 @@ use crate::request::config;
 pub fn run(mut args: CampaignShrinkArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_past_results(&mut args.results, matches)?;
     let (loaded, description, episode) = find(&args)?;
+    campaign::refuse_versions(&loaded)?;
     let changes = changes(&loaded.ranges, &episode)?;
     let dir = CampaignDir::create(&args.results.results.join("shrinks"), description, None)?;
     let mut pool = StreamPool::new(&dir, 1, args.shutdown_timeout)?;
@@ -121,7 +122,8 @@ impl Lab<'_> {
             return Ok(false);
         }
         self.runs.push(values.to_vec());
-        let episode = Episode { id: self.runs.len() as u64, seed: self.seed, parameters };
+        let episode =
+            Episode { id: self.runs.len() as u64, seed: self.seed, parameters, masked: Vec::new() };
         let line = runtime.block_on(pool.run(episode.clone(), signals))?;
         let outcome = line.outcome.unwrap_or(EpisodeOutcome::Error);
         if self.is_text {

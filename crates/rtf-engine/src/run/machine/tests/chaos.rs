@@ -218,7 +218,7 @@ fn end_all(world: &mut World<'_>) {
 }
 
 fn episode(id: u64) -> Episode {
-    Episode { id, seed: 1, parameters: Vec::new() }
+    Episode { id, seed: 1, parameters: Vec::new(), masked: Vec::new() }
 }
 
 fn reset() -> ResetPlan {

@@ -21,7 +21,12 @@ fn plan(episodes: u64) -> SuitePlan {
     plan.refers_to_values = true;
     let episode = |id| {
         let value = format!("{id}.5");
-        Episode { id, seed: 7, parameters: vec![Parameter { name: "mass".to_owned(), value }] }
+        Episode {
+            id,
+            seed: 7,
+            parameters: vec![Parameter { name: "mass".to_owned(), value }],
+            masked: Vec::new(),
+        }
     };
     plan.episodes = (1..=episodes).map(episode).collect();
     plan
