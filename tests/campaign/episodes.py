@@ -82,7 +82,53 @@ def episodes(file: Path) -> Iterator[str]:
             }
             yield json.dumps(episode, separators=(",", ":"), ensure_ascii=False)
 
-    return islice(candidates(), wanted or None)
+    return trials(campaign, islice(candidates(), wanted or None))
+
+
+def trials(campaign: ET.Element, blocks: Iterator[str]) -> Iterator[str]:
+    """Each line once with each version, if there are versions."""
+    element = campaign.find("versions")
+    if element is None:
+        yield from blocks
+        return
+    name, versions = element.attrib["parameter"], element.attrib["values"].split()
+    masked = sorted(versions, key=len, reverse=True) if element.get("blinded") == "true" else []
+    number = count(1)
+    for block, line in enumerate(blocks):
+        condition = json.loads(line)
+        for version in order(int(campaign.get("seed", "0")), name, len(versions), block):
+            trial = {"id": next(number), "seed": condition["seed"]}
+            trial["parameters"] = condition["parameters"] | {name: versions[version]}
+            if masked:
+                trial["masked"] = masked
+            yield json.dumps(trial, separators=(",", ":"), ensure_ascii=False)
+
+
+def order(seed: int, name: str, versions: int, block: int) -> list[int]:
+    """The order of the versions in a block: rows of the squares of Williams."""
+    square, row = divmod(block, versions)
+    mirrored = versions % 2 == 1 and square % 2 == 1
+    first = [0]
+    for step in range(1, versions):
+        first.append((first[-1] + (step if step % 2 else -step)) % versions)
+    if mirrored:
+        first.reverse()
+
+    def shuffled(start: int) -> list[int]:
+        return permutation(versions, lambda i: bits(seed, "order", name, start + i))
+
+    names = shuffled(2 * versions * (square - mirrored))
+    rows = shuffled(2 * versions * square + versions)
+    return [names[(w + rows[row]) % versions] for w in first]
+
+
+def permutation(size: int, random: Callable[[int], int]) -> list[int]:
+    """0, 1, … by Fisher and Yates."""
+    order = list(range(size))
+    for i in range(size - 1, 0, -1):
+        j = int(unit_of(random(i)) * (i + 1))
+        order[i], order[j] = order[j], order[i]
+    return order
 
 
 def table(file: Path, parameter: ET.Element) -> list[Row]:
@@ -119,11 +165,8 @@ def units(
 
     def latin(c: int) -> float:
         start = c // wanted * wanted
-        order = list(range(wanted))
-        for i in range(wanted - 1, 0, -1):
-            j = int(unit_of(bits(seed, "permutation", name, start + i)) * (i + 1))
-            order[i], order[j] = order[j], order[i]
-        u = (order[c % wanted] + unit_of(bits(seed, "value", name, c))) / wanted
+        parts = permutation(wanted, lambda i: bits(seed, "permutation", name, start + i))
+        u = (parts[c % wanted] + unit_of(bits(seed, "value", name, c))) / wanted
         return min(u, 1 - 2**-53)
 
     return latin

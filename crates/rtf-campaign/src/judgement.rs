@@ -53,9 +53,13 @@ pub struct Judge {
 
 #[derive(Clone, Copy, Debug)]
 enum Rule {
-    Fixed { confidence: f64 },
+    Fixed {
+        confidence: f64,
+    },
     Sequence(ConfidenceSequence),
     Sprt(Sprt, ConfidenceSequence),
+    /// Versions are compared: there is no claim about the rate of all trials.
+    Trials,
 }
 
 impl Judge {
@@ -63,8 +67,16 @@ impl Judge {
     /// stopping rule is invalid, which [`parse`](crate::parse) reports.
     #[must_use]
     pub fn new(campaign: &Campaign, planned: usize) -> Option<Self> {
-        let confidence = campaign.claim.confidence.as_ref().map(|confidence| confidence.value);
-        Self::of(campaign.claim.rate, confidence, campaign.stop, planned)
+        let Some(claim) = campaign.claim() else { return Some(Self::of_trials(planned)) };
+        let confidence = claim.confidence.as_ref().map(|confidence| confidence.value);
+        Self::of(claim.rate, confidence, campaign.stop, planned)
+    }
+
+    /// A judge that ends a campaign when all trials of versions have results: the comparison
+    /// decides, not the rate of all trials.
+    #[must_use]
+    pub fn of_trials(planned: usize) -> Self {
+        Self { claimed: 0.0, planned, rule: Rule::Trials }
     }
 
     #[must_use]
@@ -141,7 +153,7 @@ impl Judge {
 
     /// Whether the number of episodes is fixed.
     pub(crate) fn is_fixed(&self) -> bool {
-        matches!(self.rule, Rule::Fixed { .. })
+        matches!(self.rule, Rule::Fixed { .. } | Rule::Trials)
     }
 
     pub(crate) fn planned(&self) -> u64 {
@@ -155,7 +167,7 @@ impl Judge {
 
     pub(crate) fn decide_sequentially(&self, passed: u64, episodes: u64) -> Option<Verdict> {
         match &self.rule {
-            Rule::Fixed { .. } => None,
+            Rule::Fixed { .. } | Rule::Trials => None,
             Rule::Sequence(sequence) => {
                 if !sequence.excludes(self.claimed, passed, episodes) {
                     return None;
@@ -187,6 +199,7 @@ impl Judge {
         let interval = |passed, trials| match &self.rule {
             Rule::Fixed { confidence } => exact_rate(passed, trials, *confidence),
             Rule::Sequence(sequence) | Rule::Sprt(_, sequence) => sequence.rate(passed, trials),
+            Rule::Trials => None,
         };
         let known = passed + failed;
         let value = interval(passed, known)?.value;

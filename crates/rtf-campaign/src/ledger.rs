@@ -155,6 +155,11 @@ impl Ledger {
         &self.episodes
     }
 
+    /// The campaign continues: earlier results of the bench do not end it, because it may work again.
+    pub fn resume(&mut self) {
+        self.bench_in_succession = 0;
+    }
+
     #[must_use]
     pub fn is_bench_broken(&self) -> bool {
         self.bench_in_succession >= MAX_BENCH_RESULTS
@@ -234,5 +239,9 @@ mod tests {
         ledger.record(19, Passed, None);
         ledger.record(20, Error, None);
         assert!(!ledger.is_bench_broken(), "an episode in between had a result");
+        (0..MAX_BENCH_RESULTS).for_each(|_| ledger.bench_in_succession += 1);
+        assert!(ledger.is_bench_broken());
+        ledger.resume();
+        assert!(!ledger.is_bench_broken(), "the bench was repaired");
     }
 }

@@ -12,6 +12,7 @@ use rtf_run::exit;
 
 use super::pool::{EndedWorker, Pool, WorkerEvent};
 use super::progress::Progress;
+use super::questions::QuestionDesk;
 use super::summary::EarlyEnd;
 use super::worker;
 
@@ -40,7 +41,9 @@ pub struct Coordinator<'a, P> {
     is_reversed: bool,
     /// The end of the campaign's budget.
     deadline: Option<Instant>,
-    progress: Progress,
+    progress: Progress<'a>,
+    /// The questions of workers, if the operator can answer here.
+    desk: Option<QuestionDesk>,
 }
 
 /// How a campaign has ended.
@@ -75,15 +78,21 @@ impl<'a, P: Pool> Coordinator<'a, P> {
             is_stopped: false,
             is_reversed: false,
             deadline: campaign.budget.map(|budget| Instant::now() + budget),
-            progress: Progress::new(),
+            progress: Progress::new(campaign),
+            desk: None,
         })
     }
 
     /// Prints nothing; each worker may run its last episode first.
     #[must_use]
     pub fn for_comparison(mut self, is_reversed: bool) -> Self {
-        (self.is_reversed, self.progress) = (is_reversed, Progress::silent());
+        (self.is_reversed, self.progress) = (is_reversed, self.progress.silent());
         self
+    }
+
+    /// Lets the operator at this terminal answer the questions of workers.
+    pub fn with_operator(self) -> Result<Self, Failure> {
+        Ok(Self { desk: Some(QuestionDesk::open()?), ..self })
     }
 
     /// Runs the episodes until the claim is decided, all of them have results, or the user stops.
@@ -119,6 +128,8 @@ impl<'a, P: Pool> Coordinator<'a, P> {
             }
             let collected = self.collect().await;
             self.keep(collected).await;
+            let answered = self.update_questions();
+            self.keep(answered).await;
             self.judge().await;
             self.check_budget().await;
             let printed = self.progress.numbers(&self.ledger);
@@ -163,10 +174,17 @@ impl<'a, P: Pool> Coordinator<'a, P> {
         first
     }
 
+    fn update_questions(&mut self) -> Result<(), Failure> {
+        let list = (self.campaign, self.episodes.len());
+        let update =
+            |desk: &mut QuestionDesk| desk.update(&mut self.pool, &mut self.progress, list);
+        self.desk.as_mut().map_or(Ok(()), update)
+    }
+
     fn record(&mut self, line: EpisodeLine) -> Result<(), Failure> {
         let index = usize::try_from(line.episode).ok().and_then(|id| id.checked_sub(1));
         if let Some(episode) = index.and_then(|index| self.episodes.get(index)) {
-            self.progress.result(&line, episode)?;
+            self.progress.result(&line, episode, self.episodes.len())?;
         }
         if let Some(outcome) = line.outcome {
             self.ledger.record(line.episode, outcome, line.reason);
@@ -198,12 +216,12 @@ impl<'a, P: Pool> Coordinator<'a, P> {
             false => self.failed_starts + 1,
         };
         if code == Some(exit::BAD_INPUT) || self.failed_starts >= MAX_FAILED_STARTS {
-            return Err(worker::failure(&ending, &outputs));
+            return Err(worker::failure(&ending, &outputs, |text| self.campaign.mask(text)));
         }
         // For example, the tear-down of a test that runs many episodes failed.
         if code == Some(exit::FAILED) && !is_explained {
             let ending = format!("{ending} although all of its episodes passed");
-            return Err(worker::failure(&ending, &outputs));
+            return Err(worker::failure(&ending, &outputs, |text| self.campaign.mask(text)));
         }
         Ok(())
     }

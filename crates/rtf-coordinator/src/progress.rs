@@ -3,7 +3,7 @@
 use std::io::{self, IsTerminal as _};
 use std::time::{Duration, Instant};
 
-use rtf_campaign::{EpisodeResult, Ledger};
+use rtf_campaign::{Campaign, EpisodeResult, Ledger};
 use rtf_model::{Episode, EpisodeOutcome};
 use rtf_report::episode_results::EpisodeLine;
 use rtf_report::escape;
@@ -15,30 +15,46 @@ const PRINTED: usize = 20;
 
 /// The progress on standard output.
 #[derive(Debug)]
-pub struct Progress {
+pub struct Progress<'a> {
+    campaign: &'a Campaign,
     is_terminal: bool,
     every: Duration,
     printed_at: Instant,
     printed: usize,
     is_silent: bool,
+    /// The prompt for an answer, in place of the numbers.
+    prompt: Option<String>,
 }
 
-impl Progress {
+impl<'a> Progress<'a> {
     /// Nothing is printed yet.
-    #[expect(clippy::new_without_default, reason = "it depends on the terminal")]
-    pub fn new() -> Self {
+    pub fn new(campaign: &'a Campaign) -> Self {
         let is_terminal = io::stdout().is_terminal();
         let every = if is_terminal { Duration::from_millis(200) } else { Duration::from_secs(10) };
-        Self { is_terminal, every, printed_at: Instant::now(), printed: 0, is_silent: false }
+        Self {
+            campaign,
+            is_terminal,
+            every,
+            printed_at: Instant::now(),
+            printed: 0,
+            is_silent: false,
+            prompt: None,
+        }
     }
 
     /// Prints nothing.
-    pub fn silent() -> Self {
-        Self { is_silent: true, is_terminal: false, ..Self::new() }
+    #[must_use]
+    pub fn silent(self) -> Self {
+        Self { is_silent: true, is_terminal: false, ..self }
     }
 
-    /// Prints an episode that did not pass.
-    pub fn result(&mut self, line: &EpisodeLine, episode: &Episode) -> Result<(), Failure> {
+    /// Prints an episode of `total` that did not pass.
+    pub fn result(
+        &mut self,
+        line: &EpisodeLine,
+        episode: &Episode,
+        total: usize,
+    ) -> Result<(), Failure> {
         let Some(outcome) = line.outcome.filter(|outcome| *outcome != EpisodeOutcome::Passed)
         else {
             return Ok(());
@@ -47,30 +63,42 @@ impl Progress {
         if self.printed > PRINTED || self.is_silent {
             return Ok(());
         }
-        let parameters = parameters(episode);
+        let parameters = self.parameters(episode);
+        let label = self.campaign.episode_label(episode.id, total);
         let reason = line.reason.as_deref().and_then(|reason| reason.lines().next());
         let reason = reason.map(escape::line).unwrap_or_default();
         let (clear, color) = (self.clear(), color(outcome));
+        let prompt = self.prompt.as_deref().unwrap_or_default();
         terminal::stdout(|out| {
-            writeln!(
-                out,
-                "{clear}  {color}{:<9}\u{1b}[0m episode {}  {parameters}",
-                word(outcome),
-                episode.id
-            )?;
+            let word = word(outcome);
+            writeln!(out, "{clear}  {color}{word:<9}\u{1b}[0m {label}  {parameters}")?;
             if !reason.is_empty() {
                 writeln!(out, "            {reason}")?;
             }
             if self.printed == PRINTED {
                 writeln!(out, "  (further ones are only in the results)")?;
             }
-            Ok(())
+            write!(out, "{prompt}")
         })
+    }
+
+    /// Prints lines.
+    pub fn note(&self, lines: &str) -> Result<(), Failure> {
+        let (clear, prompt) = (self.clear(), self.prompt.as_deref().unwrap_or_default());
+        terminal::stdout(|out| write!(out, "{clear}{lines}\n{prompt}"))
+    }
+
+    /// Shows a prompt in place of the numbers, or the numbers again.
+    pub fn set_prompt(&mut self, prompt: Option<String>) -> Result<(), Failure> {
+        self.prompt = prompt;
+        let (clear, prompt) = (self.clear(), self.prompt.as_deref().unwrap_or_default());
+        terminal::stdout(|out| write!(out, "{clear}{prompt}"))
     }
 
     /// Prints the numbers, if it is time.
     pub fn numbers(&mut self, ledger: &Ledger) -> Result<(), Failure> {
-        if self.is_silent || self.printed_at.elapsed() < self.every {
+        let is_hidden = self.is_silent || self.prompt.is_some();
+        if is_hidden || self.printed_at.elapsed() < self.every {
             return Ok(());
         }
         self.printed_at = Instant::now();
@@ -79,8 +107,9 @@ impl Progress {
         let none = count(EpisodeResult::None);
         let (clear, end) = (self.clear(), if self.is_terminal { "" } else { "\n" });
         let (done, all) = (passed + failed + none, ledger.episodes().len());
+        let noun = self.campaign.noun();
         terminal::stdout(|out| {
-            write!(out, "{clear}  {done} of {all} episodes: {passed} passed, {failed} failed")?;
+            write!(out, "{clear}  {done} of {all} {noun}s: {passed} passed, {failed} failed")?;
             if none > 0 {
                 write!(out, ", {none} without a result")?;
             }
@@ -92,6 +121,14 @@ impl Progress {
     pub fn end(&self) -> Result<(), Failure> {
         let clear = self.clear();
         terminal::stdout(|out| write!(out, "{clear}"))
+    }
+
+    /// Those that may be shown, without a blinded version.
+    fn parameters(&self, episode: &Episode) -> String {
+        let hidden = self.campaign.versions().filter(|versions| versions.blinded);
+        let mut episode = episode.clone();
+        episode.parameters.retain(|it| hidden.is_none_or(|hide| hide.parameter.value != it.name));
+        parameters(&episode)
     }
 
     fn clear(&self) -> &'static str {

@@ -230,7 +230,7 @@ impl<'a> StreamPool<'a> {
         if code == exit::BAD_INPUT || self.failed_starts >= MAX_FAILED_STARTS {
             let ending = worker::ending(worker.number, Some(code));
             let output = worker::output(self.dir, worker.number);
-            return Err(worker::failure(&ending, &[output]).into());
+            return Err(worker::failure(&ending, &[output], str::to_owned).into());
         }
         let Some(asked) = worker.running else { return Ok(None) };
         let reason = format!("worker {} ended with exit code {code}", worker.number);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::Path;
 
-use rtf_campaign::file::StoppingRule;
+use rtf_campaign::file::{Claim, StoppingRule};
 use rtf_campaign::forecast::forecast_text;
 use rtf_campaign::{Campaign, EpisodeResult, Judge, Judgement, Ledger, Verdict};
 use rtf_report::episode_results::EpisodeLine;
@@ -37,15 +37,10 @@ pub fn print(
     ];
     let bench: u32 = ledger.episodes().iter().map(|episode| episode.bench).sum();
     let done: usize = numbers.iter().map(|(_, number)| number).sum();
-    let (verdict, color) = match judgement.verdict {
-        Verdict::Passed => ("passed", "\u{1b}[32m"),
-        Verdict::Failed => ("failed", "\u{1b}[31m"),
-        Verdict::Undecided => ("undecided", "\u{1b}[33m"),
-    };
     terminal::stdout(|out| {
         writeln!(out)?;
         let total = ledger.episodes().len();
-        writeln!(out, "{done} of {}", count(total, "episode"))?;
+        writeln!(out, "{done} of {}", count(total, campaign.noun()))?;
         for (name, number) in numbers.iter().filter(|(_, number)| *number > 0) {
             writeln!(out, "  {name:<18}{number}")?;
         }
@@ -56,23 +51,38 @@ pub fn print(
         if lost > 0 {
             writeln!(out, "  lost with others in a process that ended, and repeated: {lost}")?;
         }
-        if let Some(rate) = &judgement.rate {
+        if let (Some(rate), Some(claim)) = (&judgement.rate, campaign.claim()) {
             let (value, low, high) = (rate.value, rate.low, rate.high);
-            let (interval, confidence) = interval(campaign);
+            let (interval, confidence) = interval(campaign, claim);
             writeln!(
                 out,
                 "  rate {value:.4}, between {low:.4} and {high:.4} ({interval}, {confidence})"
             )?;
         }
         write_end(out, campaign, (total, judgement), early_end, dir)?;
-        let judge = Judge::new(campaign, total);
+        let judge = campaign.claim().and_then(|_| Judge::new(campaign, total));
         if let Some(text) = judge.and_then(|judge| forecast_text(&judge, judgement)) {
             writeln!(out, "  {text}")?;
         }
         writeln!(out, "results: {}", dir.display())?;
-        let claimed = campaign.claim.rate;
-        writeln!(out, "claim rate >= {claimed}: {color}{verdict}\u{1b}[0m")
+        match campaign.claim() {
+            Some(Claim { rate, .. }) => {
+                let verdict = verdict_text(judgement.verdict);
+                writeln!(out, "claim rate >= {rate}: {verdict}")
+            }
+            None => Ok(()),
+        }
     })
+}
+
+/// In its colour.
+pub fn verdict_text(verdict: Verdict) -> String {
+    let (verdict, color) = match verdict {
+        Verdict::Passed => ("passed", "\u{1b}[32m"),
+        Verdict::Failed => ("failed", "\u{1b}[31m"),
+        Verdict::Undecided => ("undecided", "\u{1b}[33m"),
+    };
+    format!("{color}{verdict}\u{1b}[0m")
 }
 
 /// Writes why a campaign ended before all of its episodes had run.
@@ -108,9 +118,9 @@ fn write_end(
     Ok(())
 }
 
-fn interval(campaign: &Campaign) -> (&'static str, String) {
+fn interval(campaign: &Campaign, claim: &Claim) -> (&'static str, String) {
     let percent = |confidence: f64| format!("{} % confidence", rounded(confidence * 100.0));
-    let declared = campaign.claim.confidence.as_ref().map_or(0.0, |confidence| confidence.value);
+    let declared = claim.confidence.as_ref().map_or(0.0, |confidence| confidence.value);
     match campaign.stop {
         StoppingRule::Fixed => ("Clopper and Pearson", percent(declared)),
         StoppingRule::ConfidenceSequence => ("confidence sequence", percent(declared)),

@@ -14,7 +14,7 @@ use rtf_run::campaign::read_list;
 use rtf_run::error::Failure;
 use rtf_run::{VerbResult, exit, spawn_self};
 
-use super::worker;
+use super::worker::{self, Answers};
 
 /// SIGTERM.
 const TERM: i32 = 15;
@@ -34,7 +34,12 @@ pub fn run(task: &ArrayTask, shutdown_timeout: Duration) -> VerbResult {
         false => {
             let file = attempt.join("list.jsonl");
             write(&file, &EpisodeList::to_json_lines(&list))?;
-            let command = worker::command_with_list(&dir, worker, &file, shutdown_timeout)?;
+            let command = worker::command_with_list(
+                &dir,
+                worker,
+                &file,
+                (shutdown_timeout, Answers::Nobody),
+            )?;
             let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
             runtime.map_err(Failure::internal)?.block_on(wait(command.into()))?
         }

@@ -11,6 +11,7 @@ use std::time::Duration;
 
 use rtf_report::escape;
 use rtf_run::campaign::directory::CampaignDir;
+use rtf_run::campaign_operator::OPERATOR_ON_STDIN;
 use rtf_run::error::Failure;
 use rtf_run::spawn_self;
 
@@ -43,23 +44,39 @@ pub fn command(
     Ok(command)
 }
 
+/// Who answers the questions of workers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answers {
+    /// The operator at the terminal of this process.
+    Operator,
+    /// No user.
+    Nobody,
+    /// No user, because of `--no-input`.
+    NoInput,
+}
+
 /// The command of a worker with a file of episodes. It ends when its standard input is closed,
 /// also if this process is killed.
 pub fn command_with_list(
     dir: &CampaignDir,
     number: u32,
     list: &Path,
-    shutdown_timeout: Duration,
+    (shutdown_timeout, answers): (Duration, Answers),
 ) -> Result<Command, Failure> {
     let list = std::path::absolute(list).map_err(Failure::internal)?;
     let mut command = command(dir, number, list.as_os_str(), shutdown_timeout)?;
-    command.arg(spawn_self::END_WITH_STDIN);
+    match answers {
+        Answers::Operator => command.arg(OPERATOR_ON_STDIN),
+        Answers::Nobody => command.arg(spawn_self::END_WITH_STDIN),
+        Answers::NoInput => command.args([spawn_self::END_WITH_STDIN, "--no-input"]),
+    };
     Ok(command)
 }
 
-/// The failure of a worker that does not work: how it ended, and the files with what it printed.
-pub fn failure(how: &str, outputs: &[PathBuf]) -> Failure {
-    let texts: Vec<_> = outputs.iter().map(|file| last_lines(file)).collect();
+/// The failure of a worker that does not work: how it ended, and the files with what it printed, of
+/// which `shown` is shown.
+pub fn failure(how: &str, outputs: &[PathBuf], shown: impl Fn(&str) -> String) -> Failure {
+    let texts: Vec<_> = outputs.iter().map(|file| shown(&last_lines(file))).collect();
     let files: Vec<_> = outputs.iter().map(|file| format!("`{}`", file.display())).collect();
     let error = format!("{how}:\n{}", texts.join("\n").trim());
     Failure::internal(error).hint(format!("its output is in {}", files.join(" and ")))

@@ -188,9 +188,11 @@ impl FixtureValues {
         self.values.iter().find(|value| value.name == name)
     }
 
+    /// The versions of blinded trials come first, the longest one first: one may be a part of another.
     fn secrets(&self) -> impl Iterator<Item = &str> {
+        let masked = self.episode.iter().flat_map(|episode| &episode.masked);
         let present = self.values.iter().filter(|value| value.is_secret).map(|value| &value.text);
-        present.chain(&self.former_secrets).map(String::as_str)
+        masked.chain(present).chain(&self.former_secrets).map(String::as_str)
     }
 
     pub fn has_secrets(&self) -> bool {
@@ -203,18 +205,27 @@ impl FixtureValues {
             return kind;
         }
         // The journal's format has all texts of every event.
-        let Ok(mut event) = serde_json::to_value(&kind) else { return kind };
-        self.mask_value(&mut event);
-        serde_json::from_value(event).unwrap_or(kind)
-    }
-
-    fn mask_value(&self, value: &mut Value) {
-        match value {
-            Value::String(text) => *text = self.mask_text(std::mem::take(text)),
-            Value::Array(items) => items.iter_mut().for_each(|item| self.mask_value(item)),
-            Value::Object(fields) => fields.values_mut().for_each(|field| self.mask_value(field)),
-            Value::Null | Value::Bool(_) | Value::Number(_) => {}
+        let Ok(event) = serde_json::to_value(&kind) else { return kind };
+        let mut texts = Vec::new();
+        find_texts(&event, &mut String::new(), &mut texts);
+        texts.retain(|(_, text)| self.secrets().any(|it| !it.is_empty() && text.contains(it)));
+        if texts.is_empty() {
+            return kind;
         }
+        let masked = |texts: &[&(String, String)]| {
+            let mut event = event.clone();
+            for (path, text) in texts {
+                if let Some(found) = event.pointer_mut(path) {
+                    *found = self.mask_text(text.clone()).into();
+                }
+            }
+            serde_json::from_value(event)
+        };
+        // The name of an event or of one of its kinds, which contains a secret, is none.
+        let is_text = |text: &&(String, String)| masked(&[text]).is_ok();
+        let all: Vec<_> = texts.iter().collect();
+        let checked = || masked(&texts.iter().filter(is_text).collect::<Vec<_>>());
+        masked(&all).or_else(|_| checked()).unwrap_or(kind)
     }
 
     pub fn mask_text(&self, mut text: String) -> String {
@@ -270,6 +281,25 @@ impl Substitution for FixtureValues {
     }
 }
 
+/// Adds all texts in a value, each with its JSON pointer.
+fn find_texts(value: &Value, path: &mut String, texts: &mut Vec<(String, String)>) {
+    let mut step = |name: &str, inner: &Value| {
+        let before = path.len();
+        path.push('/');
+        path.push_str(&name.replace('~', "~0").replace('/', "~1"));
+        find_texts(inner, path, texts);
+        path.truncate(before);
+    };
+    match value {
+        Value::String(text) => texts.push((path.clone(), text.clone())),
+        Value::Array(items) => {
+            items.iter().enumerate().for_each(|(index, item)| step(&index.to_string(), item));
+        }
+        Value::Object(fields) => fields.iter().for_each(|(name, field)| step(name, field)),
+        Value::Null | Value::Bool(_) | Value::Number(_) => {}
+    }
+}
+
 fn find_last(bytes: &[u8], pattern: &[u8]) -> Option<usize> {
     bytes.windows(pattern.len().max(1)).rposition(|window| window == pattern)
 }
@@ -295,6 +325,32 @@ mod tests {
         let log_tail = vec!["token ***".to_owned(), "40123".to_owned()];
         let reason = "*** was refused".to_owned();
         assert_eq!(masked, EventKind::FixtureCollapsed { fixture, reason, log_tail });
+    }
+
+    #[test]
+    fn a_secret_in_the_name_of_an_event_leaves_its_texts_masked() {
+        let fixture = rtf_model::FixtureId(0);
+        let event = |text: &str| EventKind::FixtureCollapsed {
+            fixture,
+            reason: text.to_owned(),
+            log_tail: Vec::new(),
+        };
+        for secret in ["collapsed", "fixture"] {
+            assert_eq!(
+                values(secret).mask(event(&format!("{secret}!"))),
+                event("***!"),
+                "{secret}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_versions_of_a_blinded_trial_are_replaced() {
+        let mut values = FixtureValues::default();
+        let masked = vec!["act-large".to_owned(), "act".to_owned()];
+        values.begin_episode(Episode { masked, ..Episode::new(1, 0, Vec::new()) });
+        assert_eq!(values.mask_text("act-large or act".to_owned()), "*** or ***");
+        assert_eq!(values.secret_start_len(b"loads act-lar"), 7);
     }
 
     #[test]

@@ -15,7 +15,7 @@ mod test;
 use serde::{Deserialize, Serialize};
 
 pub use self::case::{CaseFinished, CaseStart, CaseStarted, Parameter};
-pub use self::episode::{CaseEpisode, Episode, EpisodeEnd, EpisodeStarted};
+pub use self::episode::{CaseEpisode, Episode, EpisodeEnd, EpisodeStarted, masked};
 pub use self::expected::{ExpectedFailure, Significance};
 pub use self::learned::LearnedLimits;
 pub use self::planned::{

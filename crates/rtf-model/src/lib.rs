@@ -42,7 +42,8 @@ pub use event::{
     CaseEpisode, CaseFinished, CaseStart, CaseStarted, Episode, EpisodeEnd, EpisodeStarted, Event,
     EventKind, ExitStatus, ExpectedFailure, FixturePlanned, FixtureProvided, HookPlanned,
     LeakedProcess, LearnedLimits, Output, Parameter, Phase, RunStarted, Significance, Source,
-    StopCause, Stream, SuitePlanned, TestFinished, TestPlanned, Trigger, signal_name, value_text,
+    StopCause, Stream, SuitePlanned, TestFinished, TestPlanned, Trigger, masked, signal_name,
+    value_text,
 };
 pub use failure_line::{FailureLine, explain_failure};
 pub use fault::{

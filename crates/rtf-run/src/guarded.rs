@@ -4,12 +4,11 @@
 //! guard did; the guard itself is [`rtf_engine::guard`].
 
 use std::io::{self, Write};
-use std::os::fd::OwnedFd;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use rtf_engine::guard::{self, GuardOutcome, Link, Recovery, Side};
+use rtf_engine::guard::{self, GuardOutcome, Lifeline, Link, Recovery, Side};
 use rtf_model::{LeakedProcess, Record};
 use rtf_report::journal;
 
@@ -20,7 +19,7 @@ use crate::{exit, operator, terminal};
 /// How the guard supervises the runner.
 pub struct Supervision {
     /// The guard ends the run when this closes.
-    pub lifeline: Option<OwnedFd>,
+    pub lifeline: Option<Lifeline>,
     /// How long the runner may not answer before the guard kills it.
     pub patience: Duration,
     /// Whether the journal is still there when the guard has ended.

@@ -1,4 +1,5 @@
-//! The person who can answer questions of tests: who is there, and the answers on the terminal.
+//! The person who can answer questions of tests: who is there, and the answers on the terminal of a
+//! run or of a campaign.
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -14,6 +15,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::process::Pid;
 use rustix::termios::{QueueSelector, tcflush, tcgetpgrp, tcsetpgrp};
 
+use crate::campaign_operator;
 use crate::control::ControlChannels;
 
 /// The longest line that a terminal passes.
@@ -30,6 +32,8 @@ const BACKGROUND: Duration = Duration::from_millis(500);
 pub struct Attendance {
     /// Whether an operator can answer on the terminal.
     pub console: bool,
+    /// Whether an operator can answer on the terminal of the campaign whose worker this is.
+    pub campaign: bool,
     /// Why no operator can answer, if none can.
     pub unattended: Option<String>,
 }
@@ -38,14 +42,19 @@ impl Attendance {
     /// No operator can answer, unless there is a page.
     pub fn on_page(has_page: bool, reason: &str) -> Self {
         let unattended = (!has_page).then(|| reason.to_owned());
-        Self { console: false, unattended }
+        Self { console: false, campaign: false, unattended }
+    }
+
+    /// The questions of a worker are answered on the terminal of its campaign.
+    pub fn of_campaign() -> Self {
+        Self { console: false, campaign: true, unattended: None }
     }
 
     /// Finds out who can answer the questions of a run. `obstacle` is why the terminal of this process
     /// is not one of an operator.
     pub fn find(has_page: bool, obstacle: Option<&'static str>) -> Self {
         match obstacle.or_else(no_console) {
-            None => Self { console: true, unattended: None },
+            None => Self { console: true, campaign: false, unattended: None },
             Some(reason) => {
                 Self::on_page(has_page, &format!("{reason}, and there is no page (`--web`)"))
             }
@@ -96,18 +105,68 @@ impl Desk {
     }
 }
 
+/// Takes what the operator types.
+pub trait AnswerSink: Send {
+    /// Passes an answer on.
+    fn answer(&mut self, asked: &AskedHere, reply: QuestionReply);
+
+    /// Shows why a line is no answer, and the prompt again.
+    ///
+    /// # Errors
+    /// The terminal is gone.
+    fn complain(&mut self, problem: &str) -> io::Result<()>;
+}
+
+/// The run of this process.
+struct RunSink {
+    control: Arc<ControlChannels>,
+    out: BackgroundWriter,
+}
+
+impl AnswerSink for RunSink {
+    fn answer(&mut self, asked: &AskedHere, reply: QuestionReply) {
+        let control = Control::Answer { test: asked.test, reply };
+        self.control.controls.send_modify(|controls| controls.push(control));
+    }
+
+    /// The prompt follows each line.
+    fn complain(&mut self, problem: &str) -> io::Result<()> {
+        writeln!(self.out, "{:13}{}", "", escape::line(problem))
+    }
+}
+
+/// Who answers the questions of this run, if an operator can.
+///
+/// # Errors
+/// A thread cannot be started.
+pub fn of_run(
+    attendance: &Attendance,
+    control: &Arc<ControlChannels>,
+    out: &BackgroundWriter,
+) -> io::Result<Option<Operator>> {
+    if attendance.campaign {
+        return campaign_operator::start(control.clone()).map(Some);
+    }
+    if !attendance.console {
+        return Ok(None);
+    }
+    guard::survive_terminal_stop()?;
+    let sink = RunSink { control: control.clone(), out: out.clone() };
+    start(Box::new(sink), guard_group()).map(Some)
+}
+
 /// Reads the answers in a thread that ends with the process. What is typed before a question is
-/// shown is discarded: it answers another one.
+/// shown is discarded: it answers another one. `guard` is the process group of the guard, if this
+/// process has one.
 ///
 /// # Errors
 /// The thread cannot be started.
-pub fn start(control: Arc<ControlChannels>, out: BackgroundWriter) -> io::Result<Operator> {
+pub fn start(sink: Box<dyn AnswerSink>, guard: Option<Pid>) -> io::Result<Operator> {
     let desk = Arc::new(Desk::default());
-    guard::survive_terminal_stop()?;
-    let reader = AnswerReader { desk: desk.clone(), control, out, by: user() };
+    let reader = AnswerReader { desk: desk.clone(), sink, guard, by: user() };
     std::thread::Builder::new().name("answers".to_owned()).spawn(move || reader.run())?;
     Ok(Box::new(move |current: Option<AskedHere>| {
-        if current.is_some() && foreground() != Foreground::Other {
+        if current.is_some() && foreground(guard) != Foreground::Other {
             let _ = tcflush(io::stdin(), QueueSelector::IFlush);
         }
         *desk.lock() = current;
@@ -115,12 +174,16 @@ pub fn start(control: Arc<ControlChannels>, out: BackgroundWriter) -> io::Result
     }))
 }
 
-/// The user of this process.
+/// The user of this process, who answers on the console.
 fn user() -> Respondent {
-    let name = ["LOGNAME", "USER"].into_iter().filter_map(|name| std::env::var(name).ok());
-    let name = name.into_iter().find(|name| !name.is_empty());
+    Respondent { via: AnswerChannel::Console, who: Some(user_name()) }
+}
+
+/// The name of the user of this process: a record, not a signature.
+pub fn user_name() -> String {
+    let mut names = ["LOGNAME", "USER"].into_iter().filter_map(|name| std::env::var(name).ok());
     let number = || format!("user {}", rustix::process::getuid().as_raw());
-    Respondent { via: AnswerChannel::Console, who: Some(name.unwrap_or_else(number)) }
+    names.find(|name| !name.is_empty()).unwrap_or_else(number)
 }
 
 /// Which process group has the foreground of the terminal, and so may read from it.
@@ -139,34 +202,34 @@ fn guard_group() -> Option<Pid> {
     rustix::process::getpgid(rustix::process::getppid()).ok()
 }
 
-fn foreground() -> Foreground {
+fn foreground(guard: Option<Pid>) -> Foreground {
     match tcgetpgrp(io::stdin()).ok() {
         Some(group) if group == rustix::process::getpgrp() => Foreground::Runner,
-        group if group.is_some() && group == guard_group() => Foreground::Guard,
+        group if group.is_some() && group == guard => Foreground::Guard,
         _ => Foreground::Other,
     }
 }
 
 /// The foreground of the terminal while this process reads an answer. The guard blocks SIGTTOU in
 /// both processes. Ctrl-C then interrupts this process, which handles it like the guard.
-struct BorrowedForeground;
+struct BorrowedForeground(Option<Pid>);
 
 impl BorrowedForeground {
     /// Takes it from the guard; `None` if that does not have it.
-    fn take() -> Option<Self> {
+    fn take(guard: Option<Pid>) -> Option<Self> {
         let take = || tcsetpgrp(io::stdin(), rustix::process::getpgrp()).is_ok();
-        let has = match foreground() {
+        let has = match foreground(guard) {
             Foreground::Runner => true,
             Foreground::Guard => take(),
             Foreground::Other => false,
         };
-        has.then_some(Self)
+        has.then_some(Self(guard))
     }
 }
 
 impl Drop for BorrowedForeground {
     fn drop(&mut self) {
-        if let (Foreground::Runner, Some(guard)) = (foreground(), guard_group()) {
+        if let (Foreground::Runner, Some(guard)) = (foreground(self.0), self.0) {
             // Fails if the terminal is gone.
             let _ = tcsetpgrp(io::stdin(), guard);
         }
@@ -183,13 +246,13 @@ pub fn recover_terminal(had_foreground: bool) {
 
 /// Whether this process is in the foreground of its terminal.
 pub fn has_foreground() -> bool {
-    foreground() == Foreground::Runner
+    foreground(guard_group()) == Foreground::Runner
 }
 
 struct AnswerReader {
     desk: Arc<Desk>,
-    control: Arc<ControlChannels>,
-    out: BackgroundWriter,
+    sink: Box<dyn AnswerSink>,
+    guard: Option<Pid>,
     by: Respondent,
 }
 
@@ -237,15 +300,14 @@ impl AnswerReader {
                 Typed::Line(line) => match choose(&asked.question, &line) {
                     Ok(answer) => Some(answer),
                     Err(problem) => {
-                        self.complain(&problem)?;
+                        self.sink.complain(&problem)?;
                         continue;
                     }
                 },
             };
-            let (test, question) = (asked.test, asked.question.question);
+            let question = asked.question.question;
             let reply = QuestionReply { question, answer, by: self.by.clone() };
-            let control = Control::Answer { test, reply };
-            self.control.controls.send_modify(|controls| controls.push(control));
+            self.sink.answer(asked, reply);
             self.wait_for_end(asked);
             return Ok(());
         }
@@ -255,7 +317,7 @@ impl AnswerReader {
         let stdin = io::stdin();
         let mut borrowed = None;
         while self.desk.is_current(asked) {
-            borrowed = borrowed.or_else(BorrowedForeground::take);
+            borrowed = borrowed.or_else(|| BorrowedForeground::take(self.guard));
             if borrowed.is_none() {
                 std::thread::sleep(BACKGROUND);
                 continue;
@@ -280,11 +342,6 @@ impl AnswerReader {
             };
         }
         Ok(Typed::Over)
-    }
-
-    /// The prompt follows each line.
-    fn complain(&mut self, problem: &str) -> io::Result<()> {
-        writeln!(self.out, "{:13}{}", "", escape::line(problem))
     }
 
     /// Waits until the run has taken the answer.

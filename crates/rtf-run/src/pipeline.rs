@@ -1,10 +1,10 @@
 //! The whole way of a run, under a guard: request → plan → preflight → run → finish.
 
-use std::os::fd::OwnedFd;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
+use rtf_engine::guard::Lifeline;
 use rtf_model::Record;
 use rtf_report::background_writer::BackgroundWriter;
 
@@ -25,7 +25,7 @@ pub struct Invocation {
     /// Where the results go.
     pub targets: ResultTargets,
     /// The guard ends the run when this closes.
-    pub lifeline: Option<OwnedFd>,
+    pub lifeline: Option<Lifeline>,
     /// How long the runner may not answer before the guard kills it.
     pub patience: Duration,
 }
@@ -52,10 +52,10 @@ pub fn run(
             planned.learn(&request.database, &request.tests);
         }
         let reports = reports::open_all(&output.reports, &output.results)?;
-        let can_answer = request.attendance.console;
+        let attendance = request.attendance.clone();
         let print = |dir: &_, stdout: &BackgroundWriter, control: &Arc<ControlChannels>| {
-            let operator = can_answer.then(|| operator::start(control.clone(), stdout.clone()));
-            let operator = operator.transpose().map_err(Failure::internal)?;
+            let operator =
+                operator::of_run(&attendance, control, stdout).map_err(Failure::internal)?;
             Ok(outputs::reporters(&output, dir, stdout, operator))
         };
         let prepared = preflight::prepare(&request, reports, print)?;

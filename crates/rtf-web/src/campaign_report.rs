@@ -34,8 +34,12 @@ pub struct CampaignReport {
     /// The commit of the sources.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
-    /// The claimed rate.
-    pub claim: f64,
+    /// The claimed rate. Missing if versions are compared.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub claim: Option<f64>,
+    /// The versions that are tried and compared.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub versions: Option<CampaignVersions>,
     /// The stopping rule.
     pub rule: String,
     /// The confidence of the intervals of the claim.
@@ -73,6 +77,33 @@ pub struct CampaignReport {
     pub problems: Vec<EpisodeProblem>,
     /// The number of all these episodes.
     pub problem_count: usize,
+}
+
+/// The versions of a campaign.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct CampaignVersions {
+    /// How many there are.
+    pub count: usize,
+    /// Whether they are hidden until all trials have results. Then the report has no version.
+    pub hidden: bool,
+    /// The rate of each version, the baseline first.
+    pub rates: Vec<CampaignVersionRate>,
+    /// How each further version differs from the baseline, as a sentence.
+    pub findings: Vec<String>,
+}
+
+/// How often a version passed.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct CampaignVersionRate {
+    /// The version.
+    pub version: String,
+    /// The number of trials with a result.
+    pub episodes: u64,
+    /// How many passed.
+    pub passed: u64,
+    /// The rate with its Wilson interval at 95 % confidence. Missing without results.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rate: Option<Rate>,
 }
 
 /// The rate after some episodes.

@@ -77,7 +77,7 @@ export function drawProgress({ progress, claim }: CampaignReport, width: number)
     const upper = progress.map(({ episodes, rate }) => place(episodes, rate.high));
     const lower = progress.map(({ episodes, rate }) => place(episodes, rate.low)).reverse();
     const band = [...upper, ...lower].join(' ');
-    return { ...axes, line: line.join(' '), band, claim: y(claim) };
+    return { ...axes, line: line.join(' '), band, claim: y(claim ?? 0) };
 }
 
 /** The map of two parameters, in which either may be that of the columns. */

@@ -8,6 +8,7 @@ mod list;
 pub(crate) mod sampler;
 mod sobol;
 pub(crate) mod space;
+mod trials;
 
 use std::path::Path;
 
@@ -80,7 +81,10 @@ pub fn resolve(campaign: &Campaign, resolution: &mut Resolution<'_>) -> Option<E
         report_constraints(campaign, resolution, (list.episodes.len(), most));
         return None;
     }
-    Some(list)
+    match campaign.versions() {
+        Some(versions) => trials::of_blocks(list, versions, (campaign, resolution)),
+        None => Some(list),
+    }
 }
 
 /// The seeds of candidates.

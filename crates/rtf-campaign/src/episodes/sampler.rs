@@ -123,26 +123,26 @@ impl ShuffledParts {
         let count = (self.order.len() as u64).max(1);
         let (round, index) = (candidate / count, candidate % count);
         if self.round != Some(round) {
-            self.shuffle(round * count);
+            shuffle(&mut self.order, &mut self.random, round * count);
             self.round = Some(round);
         }
         let part = usize::try_from(index).ok().and_then(|index| self.order.get(index));
         part.copied().unwrap_or_default()
     }
+}
 
-    /// Shuffles 0, 1, … by the method of Fisher and Yates, with the random numbers from `start` on.
-    #[expect(
-        clippy::cast_precision_loss,
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "an index below the number of episodes"
-    )]
-    fn shuffle(&mut self, start: u64) {
-        self.order.iter_mut().zip(0..).for_each(|(part, index)| *part = index);
-        for index in (1..self.order.len()).rev() {
-            let other = self.random.unit(start + index as u64) * (index + 1) as f64;
-            self.order.swap(index, other as usize);
-        }
+/// Shuffles 0, 1, … by the method of Fisher and Yates, with the random numbers from `start` on.
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "an index below the number of episodes"
+)]
+pub(super) fn shuffle(order: &mut [u32], random: &mut RandomStream, start: u64) {
+    order.iter_mut().zip(0..).for_each(|(part, index)| *part = index);
+    for index in (1..order.len()).rev() {
+        let other = random.unit(start + index as u64) * (index + 1) as f64;
+        order.swap(index, other as usize);
     }
 }
 

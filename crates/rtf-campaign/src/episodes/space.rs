@@ -70,7 +70,9 @@ impl<'a> Space<'a> {
         if resolution.problems.len() > before {
             return None;
         }
-        check_names(&names, resolution);
+        let version = campaign.versions().map(|versions| &versions.parameter);
+        let version = version.map(|name| (name.value.clone(), name.span));
+        check_names(&names.iter().cloned().chain(version).collect::<Vec<_>>(), resolution);
         check_constraints(campaign, &names, &dimensions, resolution);
         let combinations = combinations(&dimensions);
         if combinations > MAX_COMBINATIONS {

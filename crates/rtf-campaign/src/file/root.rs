@@ -5,8 +5,8 @@ use rtf_model::Diagnostic;
 use rtf_plan::suite::schema::{check, text};
 use rtf_plan::suite::{ElementReader, SourceText, Span, read_document};
 
-use super::{Campaign, Claim, DeclaredParameter, StoppingRule};
-use super::{claim, constraint, parameter, schema, stop};
+use super::{Campaign, Claim, DeclaredParameter, Goal, StoppingRule, Versions};
+use super::{claim, constraint, parameter, schema, stop, versions};
 
 /// The default of `repeats`.
 const REPEATS: u32 = 2;
@@ -43,8 +43,9 @@ struct Children {
     constraints: Vec<constraint::Constraint>,
     claim: Option<Claim>,
     stop: Option<StoppingRule>,
+    versions: Option<Versions>,
     /// The positions of elements that occur once.
-    seen: [Option<Span>; 3],
+    seen: [Option<Span>; 4],
 }
 
 fn read(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> Option<Campaign> {
@@ -54,10 +55,9 @@ fn read(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> Option<Campaign> 
     for node in root.children().filter(Node::is_element) {
         read_child(reader, node, &mut children);
     }
-    if children.seen[CLAIM].is_none() {
-        reader
-            .missing(root, "a `<claim>`: `<claim require=\"rate >= 0.95\" confidence=\"0.95\"/>`");
-    }
+    check_goal(reader, root, &children);
+    let versions = children.versions.map(Goal::Versions);
+    let claim = children.claim.map(Goal::Claim);
     Some(Campaign {
         span: ElementReader::tag(root),
         name: reader.word(root, "name"),
@@ -69,7 +69,7 @@ fn read(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> Option<Campaign> 
         description: children.description,
         parameters: children.parameters,
         constraints: children.constraints,
-        claim: children.claim?,
+        goal: versions.or(claim)?,
         stop: children.stop.unwrap_or_default(),
     })
 }
@@ -77,6 +77,34 @@ fn read(reader: &mut ElementReader<'_>, root: Node<'_, '_>) -> Option<Campaign> 
 const DESCRIPTION: usize = 0;
 const CLAIM: usize = 1;
 const STOP: usize = 2;
+const VERSIONS: usize = 3;
+
+/// Reports a campaign without a goal, and elements that do not fit it.
+fn check_goal(reader: &mut ElementReader<'_>, root: Node<'_, '_>, children: &Children) {
+    let seen = &children.seen;
+    let Some(versions) = seen[VERSIONS] else {
+        if seen[CLAIM].is_none() {
+            reader.missing(
+                root,
+                "a `<claim>`: `<claim require=\"rate >= 0.95\" confidence=\"0.95\"/>`",
+            );
+        }
+        return;
+    };
+    let hints = [
+        (CLAIM, "the comparison of the versions is the result: leave `<claim>` out"),
+        (STOP, "versions are compared after a fixed number of blocks: leave `<stop>` out"),
+    ];
+    for (index, hint) in hints {
+        let Some(span) = seen[index] else { continue };
+        let name = if index == CLAIM { "claim" } else { "stop" };
+        let message = format!("`<{name}>` in a campaign with `<versions>`");
+        let problem = reader
+            .error("conflicting-elements", span, message)
+            .label(reader.source.label(versions, "the versions"));
+        reader.report(problem.hint(hint));
+    }
+}
 
 fn read_child(reader: &mut ElementReader<'_>, node: Node<'_, '_>, children: &mut Children) {
     match node.tag_name().name() {
@@ -98,6 +126,10 @@ fn read_child(reader: &mut ElementReader<'_>, node: Node<'_, '_>, children: &mut
         "stop" => {
             reader.once(node, &mut children.seen[STOP]);
             children.stop = stop::read(reader, node);
+        }
+        "versions" => {
+            reader.once(node, &mut children.seen[VERSIONS]);
+            children.versions = versions::read(reader, node);
         }
         _ => {}
     }

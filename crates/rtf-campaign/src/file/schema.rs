@@ -6,7 +6,7 @@ use rtf_plan::suite::schema::{ElementSchema, leaf};
 pub(super) const CAMPAIGN: ElementSchema = ElementSchema {
     name: "campaign",
     attributes: &["name", "suite", "episodes", "seed", "repeats", "budget"],
-    elements: &["description", "parameter", "constraint", "claim", "stop"],
+    elements: &["description", "parameter", "constraint", "claim", "stop", "versions"],
     text: false,
 };
 
@@ -38,6 +38,7 @@ pub(super) const DESIGN: ElementSchema = leaf(
 pub(super) const CONSTRAINT: ElementSchema = leaf("constraint", &["require"]);
 pub(super) const CLAIM: ElementSchema = leaf("claim", &["require", "confidence"]);
 pub(super) const STOP: ElementSchema = leaf("stop", &["rule"]);
+pub(super) const VERSIONS: ElementSchema = leaf("versions", &["parameter", "values", "blinded"]);
 /// `<stop rule="sprt">`.
 pub(super) const SPRT: ElementSchema =
     leaf("stop rule=\"sprt\"", &["rule", "low", "high", "alpha", "beta"]);

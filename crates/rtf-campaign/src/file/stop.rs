@@ -62,7 +62,7 @@ pub(super) fn read(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option
 
 /// Reports a stopping rule that does not fit the claim or the parameters.
 pub(super) fn check_rule(reader: &mut ElementReader<'_>, campaign: &Campaign) {
-    let claim = &campaign.claim;
+    let Some(claim) = campaign.claim() else { return };
     match (campaign.stop, &claim.confidence) {
         (StoppingRule::Sprt { .. }, Some(confidence)) => {
             let message = "`confidence` has no effect with `rule=\"sprt\"`";

@@ -189,3 +189,39 @@ fn files() {
     3:40 no-such-file: there is no file `missing.csv`
     "#);
 }
+
+#[test]
+fn versions() {
+    insta::assert_snapshot!(problems(r#"<campaign suite="s.xml" episodes="4">
+  <parameter name="policy" distribution="grid" values="a b"/>
+  <versions parameter="po licy" values="act act" blinded="yes"/>
+  <claim require="rate >= 0.9" confidence="0.9"/>
+  <stop rule="confidence-sequence"/>
+  <versions values="old" blinded="true"/>
+</campaign>"#), @r#"
+    3:24 invalid-value: `parameter` is not the name of a parameter: `po licy` (letters, digits, `-` and `_`, a letter first)
+    3:59 invalid-value: `blinded` has to be `true` or `false`: `yes`
+    3:45 invalid-value: the value `act` occurs twice
+    6:3 repeated-element: `<versions>` twice in one campaign
+    6:3 incomplete: `<versions>` needs the attribute `parameter`
+    6:21 invalid-value: `values` has only one version: `old` (the first version is compared with the others: `values="old new"`)
+    4:3 conflicting-elements: `<claim>` in a campaign with `<versions>` (the comparison of the versions is the result: leave `<claim>` out)
+    5:3 conflicting-elements: `<stop>` in a campaign with `<versions>` (versions are compared after a fixed number of blocks: leave `<stop>` out)
+    2:20 dependent-episodes: a sequential stopping rule needs independent episodes (use `choice`, `uniform` or `normal`, or `<stop rule="fixed"/>`)
+    "#);
+    insta::assert_snapshot!(problems(r#"<campaign suite="s.xml" episodes="4">
+  <parameter name="po-licy" distribution="choice" values="a b"/>
+  <versions parameter="po_licy" values="v1 version2" blinded="false"/>
+</campaign>"#), @"3:24 duplicate-name: the parameters `po-licy` and `po_licy` would both be in `RTF_PARAM_PO_LICY`");
+    insta::assert_snapshot!(problems(r#"<campaign suite="s.xml" episodes="4">
+  <versions parameter="policy" values="v1 version2" blinded="true"/>
+</campaign>"#), @"2:40 invalid-value: `values` has a version with fewer than 3 characters: `v1` (it is replaced in everything that is shown, also in other words: choose a longer one, or leave `blinded` out)");
+    insta::assert_snapshot!(problems(r#"<campaign suite="s.xml" episodes="500000">
+  <versions parameter="policy" values="a b c"/>
+</campaign>"#), @"2:3 too-many-trials: 500000 blocks of 3 versions are more than 1000000 trials (choose fewer `episodes`, or fewer versions)");
+    insta::assert_snapshot!(problems(r#"<campaign suite="s.xml" episodes="4">
+  <constraint require="policy > 1"/>
+  <versions parameter="policy" values="1 2"/>
+</campaign>"#), @"2:24 unknown-parameter: the campaign has no parameter `policy`");
+    insta::assert_snapshot!(problems(r#"<campaign suite="s.xml"><versions parameter="p" values="1 2"/></campaign>"#), @"1:1 incomplete: `<campaign>` needs the attribute `episodes`");
+}

@@ -49,6 +49,9 @@ fn both_accept_all_elements_and_attributes() {
     let text = r#"<campaign suite="s.xml" episodes="10"><claim require="rate >= 0.95"/>
       <stop rule="sprt" low="0.9" high="0.97" alpha="0.05" beta="0.1"/></campaign>"#;
     assert!(xmllint(text) && parser(text));
+    let text = r#"<campaign suite="s.xml" episodes="10">
+      <versions parameter="policy" values="act diffusion" blinded="true"/></campaign>"#;
+    assert!(xmllint(text) && parser(text));
 }
 
 #[test]
@@ -67,6 +70,9 @@ fn both_refuse_wrong_values() {
         r#"<campaign suite="s.xml">CLAIM<parameter name="1" distribution="grid" values="1"/></campaign>"#,
         r#"<campaign suite="s.xml" episodes="9">CLAIM<parameter name="a" distribution="normal" mean="INF" deviation="1"/></campaign>"#,
         r#"<campaign suite="s.xml" episodes="9">CLAIM<parameter name="a" distribution="normal" mean="0" deviation="0"/></campaign>"#,
+        r#"<campaign suite="s.xml" episodes="9"><versions values="old new"/></campaign>"#,
+        r#"<campaign suite="s.xml" episodes="9"><versions parameter="p"/></campaign>"#,
+        r#"<campaign suite="s.xml" episodes="9"><versions parameter="p" values="old new" blinded="yes"/></campaign>"#,
         r#"<suite/>"#,
     ] {
         let text = wrong.replace("CLAIM", CLAIM);

@@ -1,16 +1,20 @@
 //! Workers as processes of this machine.
 
+use std::os::fd::OwnedFd;
+use std::path::Path;
 use std::process::{Child, ChildStdin};
 use std::time::Duration;
 
 use rtf_model::Episode;
+use rtf_report::console::AskedHere;
 use rtf_run::campaign::directory::CampaignDir;
+use rtf_run::campaign_operator::{CampaignAnswer, WorkerQuestions};
 use rtf_run::error::Failure;
 use rtf_run::spawn_self;
 
 use super::{EndedWorker, Pool, WorkerEvent};
 use crate::assignment::Assignment;
-use crate::worker;
+use crate::worker::{self, Answers};
 
 /// The workers on this machine.
 pub struct LocalPool<'a> {
@@ -18,6 +22,7 @@ pub struct LocalPool<'a> {
     /// The largest number of workers.
     most: usize,
     shutdown_timeout: Duration,
+    answers: Answers,
     next_worker: u32,
     workers: Vec<LocalWorker>,
 }
@@ -25,15 +30,41 @@ pub struct LocalPool<'a> {
 struct LocalWorker {
     assignment: Assignment,
     child: Child,
-    /// The run ends when this is closed, also if this process is killed.
-    _lifeline: Option<ChildStdin>,
+    lifeline: WorkerLifeline,
+}
+
+/// The run ends when this is closed, also if this process is killed.
+enum WorkerLifeline {
+    Input {
+        _open: Option<ChildStdin>,
+    },
+    /// Its questions are answered over it.
+    Questions(Box<WorkerQuestions>),
 }
 
 impl<'a> LocalPool<'a> {
     /// No worker runs.
-    pub fn new(dir: &'a CampaignDir, most: usize, shutdown_timeout: Duration) -> Self {
+    pub fn new(
+        dir: &'a CampaignDir,
+        most: usize,
+        (shutdown_timeout, answers): (Duration, Answers),
+    ) -> Self {
         let next_worker = dir.next_worker();
-        Self { dir, most, shutdown_timeout, next_worker, workers: Vec::new() }
+        Self { dir, most, shutdown_timeout, answers, next_worker, workers: Vec::new() }
+    }
+
+    fn spawn(&self, number: u32, list: &Path) -> Result<(Child, WorkerLifeline), Failure> {
+        let options = (self.shutdown_timeout, self.answers);
+        let mut command = worker::command_with_list(self.dir, number, list, options)?;
+        if self.answers != Answers::Operator {
+            let mut child = command.spawn().map_err(Failure::internal)?;
+            let _open = child.stdin.take();
+            return Ok((child, WorkerLifeline::Input { _open }));
+        }
+        let (questions, socket) = WorkerQuestions::open().map_err(Failure::internal)?;
+        command.stdin(OwnedFd::from(socket));
+        let child = command.spawn().map_err(Failure::internal)?;
+        Ok((child, WorkerLifeline::Questions(Box::new(questions))))
     }
 }
 
@@ -54,14 +85,12 @@ impl Pool for LocalPool<'_> {
             let number = self.next_worker;
             self.next_worker += 1;
             let list = self.dir.create_worker(number, &episodes)?;
-            let mut command =
-                worker::command_with_list(self.dir, number, &list, self.shutdown_timeout)?;
-            let mut child = command.spawn().map_err(Failure::internal)?;
+            let (child, lifeline) = self.spawn(number, &list)?;
             let ids = episodes.iter().map(|episode| episode.id);
             self.workers.push(LocalWorker {
                 assignment: Assignment::new(self.dir, number, ids),
-                _lifeline: child.stdin.take(),
                 child,
+                lifeline,
             });
         }
         Ok(())
@@ -89,6 +118,23 @@ impl Pool for LocalPool<'_> {
             }
         }
         Ok(events)
+    }
+
+    fn questions(&mut self) -> Vec<(u32, AskedHere)> {
+        let question = |worker: &mut LocalWorker| match &mut worker.lifeline {
+            WorkerLifeline::Input { .. } => None,
+            WorkerLifeline::Questions(it) => {
+                Some((worker.assignment.worker, it.current()?.clone()))
+            }
+        };
+        self.workers.iter_mut().filter_map(question).collect()
+    }
+
+    fn answer(&mut self, worker: u32, answer: &CampaignAnswer) {
+        let worker = self.workers.iter_mut().find(|it| it.assignment.worker == worker);
+        if let Some(WorkerLifeline::Questions(questions)) = worker.map(|it| &mut it.lifeline) {
+            questions.answer(answer);
+        }
     }
 
     async fn stop(&mut self, signal: i32) {

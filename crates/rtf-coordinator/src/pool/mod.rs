@@ -8,7 +8,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use rtf_model::Episode;
+use rtf_report::console::AskedHere;
 use rtf_report::episode_results::EpisodeLine;
+use rtf_run::campaign_operator::CampaignAnswer;
 use rtf_run::error::Failure;
 
 use super::assignment::Assignment;
@@ -36,6 +38,14 @@ pub trait Pool {
 
     /// What has happened since the last call. All results of a worker come before its end.
     async fn collect(&mut self) -> Result<Vec<WorkerEvent>, Failure>;
+
+    /// The question of each worker that the operator can answer now, with the worker's number.
+    fn questions(&mut self) -> Vec<(u32, AskedHere)> {
+        Vec::new()
+    }
+
+    /// Passes an answer to a worker.
+    fn answer(&mut self, _worker: u32, _answer: &CampaignAnswer) {}
 
     /// Stops all workers, as the signal does for `rtf run`.
     async fn stop(&mut self, signal: i32);

@@ -51,15 +51,24 @@ pub enum Side {
     Runner(Link),
 }
 
+/// What keeps a run going: its end counts as SIGTERM.
+#[derive(Debug)]
+pub enum Lifeline {
+    /// The guard discards what it reads from it.
+    Input(OwnedFd),
+    /// A socket, whose data the runner reads: it ends when the other side closes it.
+    Socket(OwnedFd),
+}
+
 /// Forks this process. The guard becomes a child subreaper; the runner becomes the leader of
 /// a new process group, so that it receives a terminal's Ctrl-C once, from the guard.
 ///
-/// The end of `lifeline` counts as SIGTERM; its data is discarded. A runner that is silent
+/// The end of `lifeline` counts as SIGTERM. A runner that is silent
 /// for `patience`, or for [`supervisor::MIN_PATIENCE`], is killed.
 ///
 /// # Errors
 /// This process has more than one thread, or the system refused.
-pub fn split(lifeline: Option<OwnedFd>, patience: Duration) -> io::Result<Side> {
+pub fn split(lifeline: Option<Lifeline>, patience: Duration) -> io::Result<Side> {
     resources::raise_descriptor_limit();
     let (guards, runners) = UnixStream::pair()?;
     let (heartbeat, runners_heartbeat) = UnixStream::pair()?;

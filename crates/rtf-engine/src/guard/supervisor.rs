@@ -1,6 +1,5 @@
 //! The guard while the runner is alive: forwards signals, receives messages, and waits.
 
-use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
@@ -8,6 +7,7 @@ use rtf_model::{ExitStatus, LeakedProcess};
 use rtf_process::{cgroup, signal_process, tree};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
+use super::Lifeline;
 use super::heartbeat::{CHECK_INTERVAL, Heartbeat};
 use super::message_receiver::MessageReceiver;
 use super::recovery::{Recovery, SWEEP_LIMIT, recover};
@@ -41,7 +41,7 @@ pub struct Guard {
     /// Why the runner was killed, and when the guard stops waiting for it.
     killed: Option<(String, Instant)>,
     /// The run ends when this is closed.
-    lifeline: Option<OwnedFd>,
+    lifeline: Option<Lifeline>,
 }
 
 /// How the run ended.
@@ -54,6 +54,27 @@ pub enum GuardOutcome {
         left: Vec<LeakedProcess>,
     },
     RunnerDied(Recovery),
+}
+
+impl Lifeline {
+    /// A socket has events only when it is closed: its data would wake the guard all the time.
+    fn polled(&self) -> PollFd<'_> {
+        match self {
+            Self::Input(line) => PollFd::new(line, PollFlags::IN),
+            Self::Socket(line) => PollFd::new(line, PollFlags::RDHUP),
+        }
+    }
+
+    fn has_ended(&self) -> bool {
+        let has_event = matches!(poll(&mut [self.polled()], Some(&Timespec::default())), Ok(1..));
+        has_event
+            && match self {
+                Self::Input(line) => {
+                    matches!(rustix::io::read(line, &mut [0; 4096]), Ok(0) | Err(_))
+                }
+                Self::Socket(_) => true,
+            }
+    }
 }
 
 impl Guard {
@@ -82,7 +103,7 @@ impl Guard {
     }
 
     /// Requests the end of the run when `lifeline` is closed.
-    pub(super) fn with_lifeline(self, lifeline: Option<OwnedFd>) -> Self {
+    pub(super) fn with_lifeline(self, lifeline: Option<Lifeline>) -> Self {
         Self { lifeline, ..self }
     }
 
@@ -123,7 +144,7 @@ impl Guard {
     fn wait(&self) {
         let mut fds = vec![PollFd::new(&self.signals, PollFlags::IN)];
         fds.extend(self.receiver.socket().map(|socket| PollFd::new(socket, PollFlags::IN)));
-        fds.extend(self.lifeline.as_ref().map(|line| PollFd::new(line, PollFlags::IN)));
+        fds.extend(self.lifeline.as_ref().map(Lifeline::polled));
         fds.extend(self.heartbeat.socket().map(|socket| PollFd::new(socket, PollFlags::IN)));
         let due = self.killed.as_ref().map(|(_, end)| *end).or(self.kill_at);
         let due = due.map(|at| at.saturating_duration_since(Instant::now()));
@@ -154,14 +175,8 @@ impl Guard {
         self.killed = Some((why, Instant::now() + KILL_LIMIT));
     }
 
-    /// Discards data; only the end counts.
     fn check_lifeline(&mut self) {
-        let Some(lifeline) = &self.lifeline else { return };
-        let mut polled = [PollFd::new(lifeline, PollFlags::IN)];
-        if !matches!(poll(&mut polled, Some(&Timespec::default())), Ok(1..)) {
-            return;
-        }
-        if matches!(rustix::io::read(lifeline, &mut [0; 4096]), Ok(0) | Err(_)) {
+        if self.lifeline.as_ref().is_some_and(Lifeline::has_ended) {
             self.lifeline = None;
             if self.signals.requests.record(Instant::now()) {
                 self.forward(libc::SIGTERM);

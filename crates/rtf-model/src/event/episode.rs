@@ -5,7 +5,7 @@ use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Parameter;
-use crate::SuiteId;
+use crate::{FixtureProvided, SuiteId};
 
 /// A run of a suite with its parameters.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -23,13 +23,22 @@ pub struct Episode {
     /// Whether a test with slots runs no other one at the same time.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub alone: bool,
+    /// Texts that are not shown, because trials are blinded: the versions, the longest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub masked: Vec<String>,
 }
 
 impl Episode {
     /// An episode that may run beside others.
     #[must_use]
     pub fn new(id: u64, seed: u32, parameters: Vec<Parameter>) -> Self {
-        Self { id, seed, parameters, alone: false }
+        Self { id, seed, parameters, alone: false, masked: Vec::new() }
+    }
+
+    /// Replaces what is not shown.
+    #[must_use]
+    pub fn mask(&self, text: &str) -> String {
+        masked(text, &self.masked)
     }
 }
 
@@ -57,6 +66,13 @@ pub struct EpisodeEnd {
     /// The same text for the same first observation, such as its hash.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_observation: Option<String>,
+}
+
+/// Replaces each of these texts.
+#[must_use]
+pub fn masked(text: &str, hidden: &[String]) -> String {
+    let hide = |text: String, it: &String| text.replace(it, FixtureProvided::SECRET);
+    hidden.iter().filter(|it| !it.is_empty()).fold(text.to_owned(), hide)
 }
 
 /// An episode starts: what happens in the suite until `episode-finished` belongs to it.

@@ -96,10 +96,19 @@ fn dimension(reader: &mut ElementReader<'_>, node: Node<'_, '_>) -> Option<Matri
 
 /// Checks the name of a parameter and reports an invalid one.
 pub fn check_name(reader: &mut ElementReader<'_>, name: &Spanned<String>) -> bool {
+    check_parameter(reader, "name", name)
+}
+
+/// Reports an attribute that is not the name of a parameter. Returns whether it is one.
+pub fn check_parameter(
+    reader: &mut ElementReader<'_>,
+    attribute: &str,
+    name: &Spanned<String>,
+) -> bool {
     let is_valid = is_name(&name.value);
     if !is_valid {
         let hint = "letters, digits, `-` and `_`, a letter first";
-        reader.wrong("name", name, "is not the name of a parameter", Some(hint));
+        reader.wrong(attribute, name, "is not the name of a parameter", Some(hint));
     }
     is_valid
 }

@@ -33,7 +33,7 @@ pub use failed_tests::{is_recording, replay_test};
 pub use options::{
     ConsoleOptions, ReplayCommand, RerunCommand, TestCommands, Verbosity, rerun_suite,
 };
-pub use questions::{AskedHere, Operator};
+pub use questions::{AskedHere, Operator, prompt, question_text};
 
 use crate::background_writer::BackgroundWriter;
 use crate::disconnect::UntilDisconnect;

@@ -3,6 +3,8 @@
 
 use rtf_model::{EventKind, Micros, Question, QuestionRecord, Record, TestId};
 
+use serde::{Deserialize, Serialize};
+
 use super::options::View;
 use super::page::ConsoleLines;
 use super::style::{self, BOLD, LOUD};
@@ -10,9 +12,15 @@ use crate::explain::{self, Tone};
 use crate::{escape, words};
 
 /// The question that the person at this terminal can answer.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct AskedHere {
     pub test: TestId,
+    /// The full name of the test.
+    pub name: String,
+    /// The episode of a campaign that runs.
+    pub episode: Option<u64>,
+    /// The path of its picture, for display.
+    pub picture: Option<String>,
     pub question: Question,
 }
 
@@ -39,17 +47,17 @@ impl QuestionPrompt {
         kind: &EventKind,
     ) -> Option<Option<String>> {
         self.operator.as_ref()?;
-        let next = oldest(view.record);
+        let next = oldest(view);
         if next == self.current {
             return None;
         }
         let is_shown = matches!((kind, &next), (EventKind::QuestionAsked(asked), Some(next))
             if asked.test == next.test && asked.question == next.question);
         if let Some(next) = next.as_ref().filter(|_| !is_shown) {
-            asked(page, view, next.test, &next.question);
+            show_asked(page, &next.name, next);
         }
         self.current = next;
-        Some(self.current.as_ref().map(|asked| prompt(view.record, asked.test)))
+        Some(self.current.as_ref().map(|asked| prompt(&asked.name)))
     }
 
     /// Passes the question to the person.
@@ -67,13 +75,23 @@ impl QuestionPrompt {
     }
 }
 
-fn prompt(record: &Record, test: TestId) -> String {
-    let name = record.full_name(test);
-    format!("{}  {}> ", style::paint(LOUD, &format!("{:>11}", "answer")), escape::line(&name))
+/// The prompt for the answer to a question with this title.
+#[must_use]
+pub fn prompt(title: &str) -> String {
+    format!("{}  {}> ", style::paint(LOUD, &format!("{:>11}", "answer")), escape::line(title))
+}
+
+/// The text of a question with this title, in lines.
+#[must_use]
+pub fn question_text(title: &str, asked: &AskedHere) -> String {
+    let mut page = ConsoleLines::default();
+    show_asked(&mut page, title, asked);
+    page.text
 }
 
 /// The open question that was asked first.
-fn oldest(record: &Record) -> Option<AskedHere> {
+fn oldest(view: View<'_>) -> Option<AskedHere> {
+    let record = view.record;
     let running = record.tests.iter().filter(|test| test.is_running());
     let open = running.flat_map(|test| {
         let questions = test.attempts.last().map_or(&[][..], |attempt| &attempt.questions);
@@ -82,20 +100,32 @@ fn oldest(record: &Record) -> Option<AskedHere> {
     let when =
         |(_, it): &(TestId, &QuestionRecord)| -> (Micros, u32) { (it.at, it.asked.question) };
     let (test, question) = open.min_by_key(when)?;
-    Some(AskedHere { test, question: question.asked.clone() })
+    Some(asked_here(view, test, &question.asked))
+}
+
+fn asked_here(View { options, record }: View<'_>, test: TestId, question: &Question) -> AskedHere {
+    let shown = |path: &String| options.shown(path.as_ref()).unwrap_or_else(|| path.clone());
+    let suite = record.tests.get(test.index()).map(|test| test.plan.suite.index());
+    let suite = suite.and_then(|suite| record.suites.get(suite));
+    let episode = suite.and_then(|suite| suite.episodes.last());
+    AskedHere {
+        test,
+        name: record.full_name(test).to_string(),
+        episode: episode.filter(|it| it.finished.is_none()).map(|it| it.episode.id),
+        picture: question.picture.as_ref().map(shown),
+        question: question.clone(),
+    }
 }
 
 /// Shows a question.
-fn asked(page: &mut ConsoleLines, view: View<'_>, test: TestId, question: &Question) {
-    let View { options, record } = view;
-    page.remark((BOLD, "question"), &escape::line(&record.full_name(test)));
+fn show_asked(page: &mut ConsoleLines, title: &str, asked: &AskedHere) {
+    page.remark((BOLD, "question"), &escape::line(title));
     let sink = &mut |tone, line: &str| page.detail(tone, line);
-    explain::block(Tone::Plain, &question.text, "", sink);
-    if let Some(picture) = &question.picture {
-        let shown = options.shown(picture.as_ref());
-        sink(Tone::Dim, &format!("picture: {}", shown.as_deref().unwrap_or(picture)));
+    explain::block(Tone::Plain, &asked.question.text, "", sink);
+    if let Some(picture) = &asked.picture {
+        sink(Tone::Dim, &format!("picture: {picture}"));
     }
-    sink(Tone::Dim, &answers(question));
+    sink(Tone::Dim, &answers(&asked.question));
 }
 
 /// `1 yes, 2 no (default: no), within 60 s`.
@@ -115,7 +145,10 @@ fn answers(question: &Question) -> String {
 /// Shows the start or the end of a question.
 pub(super) fn show(page: &mut ConsoleLines, view: View<'_>, kind: &EventKind) {
     match kind {
-        EventKind::QuestionAsked(it) => asked(page, view, it.test, &it.question),
+        EventKind::QuestionAsked(it) => {
+            let asked = asked_here(view, it.test, &it.question);
+            show_asked(page, &asked.name, &asked);
+        }
         EventKind::QuestionClosed(it) => closed(page, view.record, it.test, &it.summary()),
         _ => {}
     }

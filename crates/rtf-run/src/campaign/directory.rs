@@ -29,6 +29,7 @@ use serde::{Deserialize, Serialize};
 use super::judged::{JUDGEMENT, Judged};
 use super::read_list;
 use super::start::CampaignStart;
+use super::trials::TrialVersions;
 use crate::error::Failure;
 
 pub const DESCRIPTION: &str = "campaign.json";
@@ -64,6 +65,9 @@ pub struct Description {
     /// The jobs that run the workers, unless they run on this machine.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub jobs: Option<CampaignJobs>,
+    /// The versions, if it compares some.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub versions: Option<TrialVersions>,
     /// Which campaign it is, and where and when it was started.
     #[serde(flatten)]
     pub start: Option<CampaignStart>,
@@ -315,6 +319,7 @@ pub(crate) mod tests {
             options: Vec::new(),
             is_search: false,
             jobs: None,
+            versions: None,
             start: None,
         };
         let dir = CampaignDir::create(parent.path(), description, None).expect("a campaign");

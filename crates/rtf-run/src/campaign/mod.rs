@@ -8,6 +8,7 @@ mod ranking;
 pub mod report;
 pub mod start;
 mod stream;
+pub mod trials;
 pub mod version;
 
 use std::path::{Path, PathBuf};
@@ -85,7 +86,7 @@ pub fn load(file: &Path) -> Result<LoadedCampaign, Failure> {
 pub fn find_episode(input: &Path, id: u64) -> Result<(PathBuf, Episode), Failure> {
     let (suite, episodes) = if input.is_dir() {
         let dir = CampaignDir::open(input)?;
-        (dir.description.suite.clone(), dir.episodes()?)
+        (dir.description.suite.clone(), visible_episodes(&dir)?)
     } else {
         let loaded = load(input)?;
         loaded.print_warnings()?;
@@ -99,6 +100,26 @@ pub fn find_episode(input: &Path, id: u64) -> Result<(PathBuf, Episode), Failure
             Err(Failure::input(error).hint(format!("its episodes are 1 to {count}")))
         }
     }
+}
+
+/// Refuses a campaign with versions where an episode has only parameters.
+pub fn refuse_versions(loaded: &LoadedCampaign) -> Result<(), Failure> {
+    match loaded.campaign.versions() {
+        None => Ok(()),
+        Some(_) => {
+            let error = format!("`{}` has `<versions>`, whose trials are compared", loaded.name);
+            Err(Failure::input(error).hint("use a campaign with a `<claim>`"))
+        }
+    }
+}
+
+/// The episodes of a directory. Versions that are not hidden any more are shown when they run again.
+fn visible_episodes(dir: &CampaignDir) -> Result<EpisodeList, Failure> {
+    let mut list = dir.episodes()?;
+    if dir.versions().is_some() && !dir.hides_versions(&stored_ledger(dir, list.episodes.len())) {
+        list.episodes.iter_mut().for_each(|episode| episode.masked.clear());
+    }
+    Ok(list)
 }
 
 /// Opens the directory of an earlier campaign, and reads its results.
@@ -126,7 +147,16 @@ pub fn read_ledger(
     dir: &CampaignDir,
     is_read: impl Fn(u32) -> bool,
 ) -> Ledger {
-    let mut ledger = Ledger::new(loaded.episodes.episodes.len(), loaded.campaign.repeats);
+    let ledger = Ledger::new(loaded.episodes.episodes.len(), loaded.campaign.repeats);
+    recorded_ledger(ledger, dir, is_read)
+}
+
+/// Reads the results of all workers of a directory with this number of episodes.
+pub fn stored_ledger(dir: &CampaignDir, episodes: usize) -> Ledger {
+    recorded_ledger(Ledger::new(episodes, dir.description.repeats), dir, |_| true)
+}
+
+fn recorded_ledger(mut ledger: Ledger, dir: &CampaignDir, is_read: impl Fn(u32) -> bool) -> Ledger {
     let workers = dir.workers().into_iter().filter(|worker| is_read(*worker));
     for line in workers.flat_map(|worker| dir.recorded_by(worker)) {
         if let Some(outcome) = line.outcome {

@@ -5,17 +5,19 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use rtf_campaign::analysis::{self, ByParameter, Cell, Sample};
+use rtf_campaign::comparison::{Finding, VersionComparison, VersionRate};
 use rtf_campaign::forecast::forecast_text;
 use rtf_campaign::{EpisodeResult, Judge, Ledger, Verdict};
 use rtf_model::{Episode, EpisodeOutcome, TestAttempt};
 use rtf_web::{
     CampaignCell, CampaignMap, CampaignMapRow, CampaignParameter, CampaignProgress, CampaignReport,
-    CampaignSource, EpisodeProblem, EpisodeRun,
+    CampaignSource, CampaignVersionRate, CampaignVersions, EpisodeProblem, EpisodeRun,
 };
 
 use super::directory::{CampaignDir, DESCRIPTION};
 use super::judged::Judged;
 use super::ranking::Ranking;
+use super::trials::{ComparedTrials, TrialVersions};
 use crate::error::Failure;
 
 /// The directory of campaigns in a results directory.
@@ -66,10 +68,13 @@ pub fn report(dir: &CampaignDir) -> Result<CampaignReport, Failure> {
             ranking.add(line, run);
         }
     }
-    let judge = Judge::of(start.claim, start.confidence, start.stop, episodes.len());
+    let is_hidden = dir.hides_versions(&ledger);
+    let episodes = dir.shown_episodes(episodes, is_hidden);
+    let judge = start.judge(episodes.len());
     let judge = judge.ok_or_else(|| Failure::input("the claim cannot be judged"))?;
     let results = ledger.results();
-    let judgement = judge.judge(&results);
+    let mut judgement = judge.judge(&results);
+    let compared = ComparedTrials::judge(dir, &ledger, &mut judgement)?;
     let samples = analysis::samples(&episodes, &ledger);
     let parameters = analysis::by_parameters(&samples, start.seed);
     let mut problems = problems(dir, &episodes, (&ledger, &runs));
@@ -83,6 +88,7 @@ pub fn report(dir: &CampaignDir) -> Result<CampaignReport, Failure> {
         running,
         commit: start.revision.as_ref().map(|revision| revision.commit.clone()),
         claim: start.claim,
+        versions: dir.versions().map(|it| versions(it, compared.as_ref())),
         rule: start.rule().to_owned(),
         confidence: start.interval_confidence(),
         verdict: verdict(judgement.verdict).to_owned(),
@@ -91,8 +97,8 @@ pub fn report(dir: &CampaignDir) -> Result<CampaignReport, Failure> {
         failed: judgement.failed,
         without_result: judgement.without_result,
         rate: judgement.rate,
-        more_episodes: judge.more_episodes(&judgement),
-        forecast: forecast_text(&judge, &judgement),
+        more_episodes: start.claim.and_then(|_| judge.more_episodes(&judgement)),
+        forecast: start.claim.and_then(|_| forecast_text(&judge, &judgement)),
         progress: progress(&judge, &results[..judgement.episodes.min(results.len())]),
         maps: maps(&samples, &parameters),
         parameters: parameters.into_iter().map(parameter).collect(),
@@ -113,6 +119,35 @@ fn verdict(verdict: Verdict) -> &'static str {
         Verdict::Passed => "passed",
         Verdict::Failed => "failed",
         Verdict::Undecided => "undecided",
+    }
+}
+
+/// The rates and findings, unless the versions are hidden.
+fn versions(versions: &TrialVersions, compared: Option<&ComparedTrials>) -> CampaignVersions {
+    let rates =
+        compared.into_iter().flat_map(|it| versions.values.iter().zip(&it.comparison.versions));
+    let rate = |(version, found): (&String, &VersionRate)| CampaignVersionRate {
+        version: version.clone(),
+        episodes: found.passed + found.failed,
+        passed: found.passed,
+        rate: found.rate,
+    };
+    let findings = compared.into_iter().flat_map(|it| &it.comparison.comparisons);
+    let name = |index: usize| versions.values.get(index).map_or("", String::as_str);
+    let finding = |found: &VersionComparison| {
+        let (version, baseline) = (name(found.version - 1), name(0));
+        let p = found.results.significance.adjusted;
+        match found.finding {
+            Finding::Worse => format!("{version} is worse than {baseline} (p = {p:.4})"),
+            Finding::Better => format!("{version} is better than {baseline} (p = {p:.4})"),
+            Finding::Undecided => format!("{version} and {baseline}: undecided (p = {p:.4})"),
+        }
+    };
+    CampaignVersions {
+        count: versions.values.len(),
+        hidden: compared.is_none(),
+        rates: rates.map(rate).collect(),
+        findings: findings.map(finding).collect(),
     }
 }
 

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use jiff::Timestamp;
-use rtf_campaign::Campaign;
 use rtf_campaign::file::{Constraint, DeclaredParameter, Distribution, StoppingRule};
+use rtf_campaign::{Campaign, Judge};
 use rtf_model::{Origin, Revision};
 use rtf_plan::suite::SourceMap;
 use serde::{Deserialize, Serialize};
@@ -30,8 +30,9 @@ pub struct CampaignStart {
     pub revision: Option<Revision>,
     /// The seed of the list of episodes.
     pub seed: u64,
-    /// The claimed rate.
-    pub claim: f64,
+    /// The claimed rate, unless versions are compared.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub claim: Option<f64>,
     /// The confidence of the claim, unless the stopping rule has error rates.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub confidence: Option<f64>,
@@ -46,16 +47,25 @@ impl CampaignStart {
     pub fn find(loaded: &LoadedCampaign, file: &Path, working_dir: &Path) -> Self {
         let campaign = &loaded.campaign;
         let revision = RevisionQuery::start(working_dir);
+        let confidence = campaign.claim().and_then(|claim| claim.confidence.as_ref());
         Self {
             origin: origin::find(),
             started_at: Timestamp::now(),
             rtf: env!("CARGO_PKG_VERSION").to_owned(),
             seed: campaign.seed,
-            claim: campaign.claim.rate,
-            confidence: campaign.claim.confidence.as_ref().map(|confidence| confidence.value),
+            claim: campaign.claim().map(|claim| claim.rate),
+            confidence: confidence.map(|confidence| confidence.value),
             stop: campaign.stop,
             space: space(campaign, file, &loaded.sources),
             revision: revision.finish(),
+        }
+    }
+
+    /// The judge of a list of `planned` episodes. `None` if the claim is invalid.
+    pub fn judge(&self, planned: usize) -> Option<Judge> {
+        match self.claim {
+            Some(claim) => Judge::of(claim, self.confidence, self.stop, planned),
+            None => Some(Judge::of_trials(planned)),
         }
     }
 

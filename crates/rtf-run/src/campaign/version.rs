@@ -1,6 +1,7 @@
 //! The versions that `rtf campaign compare` and `plan` read: directories of campaigns, and files of
 //! other programs.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,6 +14,7 @@ use rtf_report::episode_results::EpisodeLine;
 use serde::Serialize;
 
 use super::directory::{CampaignDir, DESCRIPTION};
+use super::trials::refuse_versions;
 use crate::error::Failure;
 
 /// The file of LeRobot in the directory of its results.
@@ -31,6 +33,8 @@ pub enum VersionSource {
 #[derive(Clone, Debug)]
 pub struct LoadedVersion {
     pub path: PathBuf,
+    /// Of a campaign with several versions: which one it is.
+    pub name: Option<String>,
     pub source: VersionSource,
     /// Whether its results have decided how many episodes ran.
     pub is_sequential: bool,
@@ -56,14 +60,22 @@ impl LoadedVersion {
                         is expected";
             return Err(Failure::input(error).hint(hint));
         };
-        Ok(Self { path: path.to_owned(), source, is_sequential: false, episodes })
+        Ok(Self { path: path.to_owned(), name: None, source, is_sequential: false, episodes })
     }
 
     fn of_campaign(dir: CampaignDir) -> Result<Self, Failure> {
+        refuse_versions(&dir)?;
         let episodes = episodes_of(&dir)?;
         let stop = dir.description.start.as_ref().map_or(StoppingRule::Fixed, |start| start.stop);
         let is_sequential = stop != StoppingRule::Fixed;
-        Ok(Self { path: dir.path, source: VersionSource::Campaign, is_sequential, episodes })
+        let source = VersionSource::Campaign;
+        Ok(Self { path: dir.path, name: None, source, is_sequential, episodes })
+    }
+
+    /// What it is called: the version, or the path.
+    pub fn title(&self) -> Cow<'_, str> {
+        let path = || self.path.to_string_lossy();
+        self.name.as_ref().map_or_else(path, |name| name.as_str().into())
     }
 
     /// Whether both are campaigns, of which one has other episodes.
@@ -96,7 +108,7 @@ fn read_file(
 }
 
 /// The results and values of all episodes, in their order.
-fn episodes_of(dir: &CampaignDir) -> Result<Vec<ComparedEpisode>, Failure> {
+pub(super) fn episodes_of(dir: &CampaignDir) -> Result<Vec<ComparedEpisode>, Failure> {
     let list = dir.episodes()?.episodes;
     let mut ledger = Ledger::new(list.len(), dir.description.repeats);
     let episode = |episode: rtf_model::Episode| ComparedEpisode {

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use rtf_campaign::{Judge, Judgement, Ledger, Verdict};
+use rtf_campaign::{Judgement, Ledger, Verdict};
 use rtf_history::entry::{CampaignEnd, CampaignEntry, CampaignInfo, EpisodeEntry};
 use rtf_history::{ImportOutcome, Store, StoreError, SuiteFileBase};
 use rtf_model::{Episode, EpisodeOutcome};
@@ -52,8 +52,10 @@ pub fn below(path: &Path) -> Vec<PathBuf> {
     if is_campaign(path) { vec![path.to_owned()] } else { missing(path, &HashSet::new()) }
 }
 
+/// Whether it is the directory of a campaign with a claim: versions have no rate for the history.
 fn is_campaign(dir: &Path) -> bool {
-    dir.join(DESCRIPTION).is_file()
+    let has_versions = || CampaignDir::open(dir).is_ok_and(|dir| dir.versions().is_some());
+    dir.join(DESCRIPTION).is_file() && !has_versions()
 }
 
 /// Imports a campaign.
@@ -126,6 +128,9 @@ fn entry(dir: &CampaignDir) -> Result<CampaignEntry, Failure> {
             Failure::input(error).hint("it is a search, or was run by an earlier version of rtf")
         );
     };
+    let Some(claim) = start.claim else {
+        return Err(Failure::input("a campaign with versions has no rate for the history"));
+    };
     let list = dir.episodes()?.episodes;
     let results = Results::read(dir, start, list.len())?;
     let mut lines: HashMap<u64, EpisodeLine> = HashMap::new();
@@ -134,7 +139,7 @@ fn entry(dir: &CampaignDir) -> Result<CampaignEntry, Failure> {
     let episodes: Vec<_> = ran.flatten().collect();
     let names = list.first().map(|it| it.parameters.iter().map(|it| it.name.clone()).collect());
     Ok(CampaignEntry {
-        info: info(dir, start, (&results.judged, list.len(), episodes.len())),
+        info: info(dir, (start, claim), (&results.judged, list.len(), episodes.len())),
         parameters: names.unwrap_or_default(),
         episodes,
     })
@@ -152,7 +157,7 @@ impl Results {
             return Ok(Self { lines: dir.results()?, judged });
         }
         // It was killed.
-        let judge = Judge::of(start.claim, start.confidence, start.stop, planned);
+        let judge = start.judge(planned);
         let judge = judge.ok_or_else(|| Failure::input("the claim cannot be judged"))?;
         let mut lines = dir.recorded();
         lines.retain(|line| line.outcome.is_some());
@@ -187,7 +192,7 @@ fn episode(episode: &Episode, line: &EpisodeLine) -> Option<EpisodeEntry> {
 
 fn info(
     dir: &CampaignDir,
-    start: &CampaignStart,
+    (start, claim): (&CampaignStart, f64),
     (judged, planned, run): (&Judged, usize, usize),
 ) -> CampaignInfo {
     let description = &dir.description;
@@ -221,7 +226,7 @@ fn info(
         rtf: start.rtf.clone(),
         seed: start.seed,
         space: start.space.clone(),
-        claim: start.claim,
+        claim,
         rule: start.rule().to_owned(),
         confidence: start.interval_confidence(),
         verdict: match verdict {

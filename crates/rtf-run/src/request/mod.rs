@@ -119,6 +119,7 @@ impl TestsRequest {
             self.options.config_request.params.push((name.clone(), reference));
             // `--rerun` repeats a single episode as an ordinary run.
             if episodes.len() == 1 && self.episode_stream.is_none() {
+                let value = episodes.first().map_or_else(String::new, |it| it.mask(value));
                 self.manifest.set.push(format!("{name}={value}"));
             }
         }

@@ -63,6 +63,10 @@ pub struct CampaignRunArgs {
     #[arg(long, value_name = "DURATION", default_value = "60s", value_parser = parse_duration)]
     pub shutdown_timeout: Duration,
 
+    /// Answer no questions of tests: they get their default answers, or are errors
+    #[arg(long)]
+    pub no_input: bool,
+
     /// Do not import the campaign into the history
     #[arg(long)]
     pub no_history: bool,
@@ -87,6 +91,10 @@ pub struct CampaignShowArgs {
     /// Also print the rates by two parameters: `payload,friction`
     #[arg(long, value_name = "X,Y", value_delimiter = ',', num_args = 1)]
     pub map: Vec<String>,
+
+    /// Show the versions of blinded trials before all have results; that is recorded
+    #[arg(long)]
+    pub unblind: bool,
 
     /// Output format
     #[arg(long, value_name = "FORMAT", default_value = "text")]
@@ -214,8 +222,9 @@ pub struct CampaignCompareArgs {
     #[arg(value_name = "FIRST")]
     pub first: PathBuf,
 
-    /// The results of the versions that are compared with it
-    #[arg(value_name = "NEXT", required = true)]
+    /// The results of the versions that are compared with it; none if FIRST is the directory of a
+    /// campaign with `<versions>`
+    #[arg(value_name = "NEXT")]
     pub next: Vec<PathBuf>,
 
     /// Also compare the versions for each value of a parameter

@@ -45,6 +45,11 @@ pub struct RunArgs {
     #[arg(long)]
     pub end_with_stdin: bool,
 
+    /// End the run like `--end-with-stdin`, and pass questions of tests to a campaign over standard
+    /// input, which is a socket
+    #[arg(long, hide = true, conflicts_with_all = ["end_with_stdin", "no_input"])]
+    pub operator_on_stdin: bool,
+
     /// Answer no questions of tests: they get their default answers, or are errors
     #[arg(long)]
     pub no_input: bool,

@@ -157,7 +157,7 @@ fn refuse_local_options(args: &RunVerbArgs, executor: Executor) -> Result<(), Fa
         ("--debug", debug.debug),
         ("--debugger", debug.debugger.is_some()),
         ("--debug-wait", debug.debug_wait),
-        ("--end-with-stdin", run.end_with_stdin),
+        ("--end-with-stdin", run.end_with_stdin || run.operator_on_stdin),
         ("--format", run.format != StdoutFormat::Console),
     ];
     match refused.iter().find(|(_, is_given)| *is_given) {

@@ -1,8 +1,10 @@
 //! A run on this machine.
 
-use std::os::fd::AsFd;
+use std::io;
+use std::os::fd::AsFd as _;
 use std::path::Path;
 
+use rtf_engine::guard::Lifeline;
 use rtf_engine::locks::LockOptions;
 use rtf_plan::plan::CaseListing;
 use rtf_run::campaign::{self, EpisodeStream};
@@ -41,8 +43,7 @@ impl LocalRun {
         debug: Option<DebugRequest>,
         (output, targets): (OutputRequest, ResultTargets),
     ) -> Result<Self, Failure> {
-        let lifeline = args.end_with_stdin.then(|| std::io::stdin().as_fd().try_clone_to_owned());
-        let lifeline = lifeline.transpose().map_err(Failure::internal)?;
+        let lifeline = lifeline(&args).map_err(Failure::internal)?;
         let patience = args.shutdown_timeout;
         Ok(Self {
             invocation: Invocation { output, targets, lifeline, patience },
@@ -50,6 +51,16 @@ impl LocalRun {
             source: RunSource { args, debug },
         })
     }
+}
+
+/// Standard input, if the run ends with it.
+fn lifeline(args: &RunArgs) -> io::Result<Option<Lifeline>> {
+    let stdin = || io::stdin().as_fd().try_clone_to_owned();
+    Ok(match (args.operator_on_stdin, args.end_with_stdin) {
+        (true, _) => Some(Lifeline::Socket(stdin()?)),
+        (false, true) => Some(Lifeline::Input(stdin()?)),
+        (false, false) => None,
+    })
 }
 
 impl RunSource {
@@ -111,6 +122,9 @@ pub fn debug(args: &DebugArgs, run: &RunArgs) -> Result<Option<DebugRequest>, Fa
 fn attendance(args: &RunArgs) -> Attendance {
     if args.no_input {
         return Attendance::on_page(false, "`--no-input` is set");
+    }
+    if args.operator_on_stdin {
+        return Attendance::of_campaign();
     }
     let reads_episodes = args.episodes.as_deref() == Some("-".as_ref());
     let obstacle = if args.format != StdoutFormat::Console {

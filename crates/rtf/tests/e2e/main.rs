@@ -22,6 +22,7 @@ mod campaign_invariance;
 mod campaign_kills;
 mod campaign_search;
 mod campaign_shared_hosts;
+mod campaign_trials;
 mod case_selection;
 mod cases;
 mod chaos;

@@ -7,6 +7,7 @@ use rtf_campaign::comparison::{
     ResultComparison, Significance, VersionComparison, VersionRate,
 };
 use rtf_report::escape;
+use rtf_run::campaign::trials::Unblinded;
 use rtf_run::campaign::version::LoadedVersion;
 use rtf_run::diagnostics::count;
 use rtf_statistics::Difference;
@@ -18,8 +19,8 @@ pub fn print(
     versions: &[LoadedVersion],
 ) -> io::Result<()> {
     for (number, (rate, version)) in comparison.versions.iter().zip(versions).enumerate() {
-        let path = version.path.to_string_lossy();
-        writeln!(out, "{}  {}  {}", number + 1, rate_text(rate), escape::line(&path))?;
+        let title = version.title();
+        writeln!(out, "{}  {}  {}", number + 1, rate_text(rate), escape::line(&title))?;
     }
     for (number, _) in (1..).zip(versions).filter(|(_, version)| version.is_sequential) {
         writeln!(
@@ -39,6 +40,13 @@ pub fn print(
         it.measurements.iter().try_for_each(|it| print_measurement(out, it, measurements))?;
     }
     comparison.by.iter().try_for_each(|by| print_conditions(out, by))
+}
+
+/// Prints that blinded versions were shown early.
+pub fn print_unblinded(out: &mut dyn Write, unblinded: Option<&Unblinded>) -> io::Result<()> {
+    let Some(Unblinded { at, by, trials, of }) = unblinded else { return Ok(()) };
+    let by = escape::line(by);
+    writeln!(out, "note: {by} unblinded it early, after {trials} of {of} trials, at {at:.0}")
 }
 
 /// `27 of 30 passed   90.0 %  74.4 to 96.5`.

@@ -6,12 +6,13 @@ use std::process::ExitCode;
 
 use clap::ArgMatches;
 use rtf_campaign::comparison::ComparedEpisode;
-use rtf_campaign::file::StoppingRule;
+use rtf_campaign::file::{Goal, StoppingRule};
 use rtf_campaign::invariance::{Cause, Invariance, Variation, VariationResult, judge};
 use rtf_campaign::{Campaign, Ledger};
 use rtf_coordinator::coordinator::Coordinator;
 use rtf_coordinator::pool::LocalPool;
 use rtf_coordinator::summary::EarlyEnd;
+use rtf_coordinator::worker::Answers;
 use rtf_engine::signal::SignalListener;
 use rtf_plan::suite::Spanned;
 use rtf_report::escape;
@@ -76,7 +77,9 @@ pub fn run(mut args: CampaignInvarianceArgs, matches: &ArgMatches) -> VerbResult
 fn complete(campaign: &Campaign) -> Campaign {
     let mut campaign = campaign.clone();
     (campaign.stop, campaign.budget) = (StoppingRule::Fixed, None);
-    campaign.claim.confidence = Some(Spanned::new(CONFIDENCE, campaign.claim.span));
+    if let Goal::Claim(claim) = &mut campaign.goal {
+        claim.confidence = Some(Spanned::new(CONFIDENCE, claim.span));
+    }
     campaign
 }
 
@@ -144,7 +147,7 @@ impl Lab<'_> {
         let workers = if variation == Some(Variation::TwoWorkers) { 2 } else { 1 };
         let episodes = &self.loaded.episodes.episodes;
         let ledger = Ledger::new(episodes.len(), self.campaign.repeats);
-        let pool = LocalPool::new(&dir, workers, self.args.shutdown_timeout);
+        let pool = LocalPool::new(&dir, workers, (self.args.shutdown_timeout, Answers::Nobody));
         let is_reversed = variation == Some(Variation::OtherOrder);
         let coordinator = Coordinator::new(self.campaign, episodes, ledger, pool)?;
         let signals = SignalListener::install().map_err(Failure::internal)?;

@@ -8,6 +8,7 @@ mod run;
 mod search;
 mod show;
 mod shrink;
+mod trials;
 
 use std::path::Path;
 use std::process::ExitCode;

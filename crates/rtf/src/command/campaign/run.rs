@@ -11,9 +11,11 @@ use std::time::{Duration, Instant};
 use clap::ArgMatches;
 use jiff::Timestamp;
 use rtf_campaign::Ledger;
+use rtf_campaign::file::{Goal, Versions};
 use rtf_coordinator::coordinator::{CampaignEnd, Coordinator, episodes_of};
 use rtf_coordinator::pool::{ClusterPool, LocalPool};
 use rtf_coordinator::summary::{self, EarlyEnd};
+use rtf_coordinator::worker::Answers;
 use rtf_engine::signal::SignalListener;
 use rtf_history::entry;
 use rtf_plan::plan::Plan;
@@ -21,12 +23,15 @@ use rtf_report::escape;
 use rtf_run::campaign::directory::{CampaignDir, CampaignJobs, Description};
 use rtf_run::campaign::judged::Judged;
 use rtf_run::campaign::start::CampaignStart;
+use rtf_run::campaign::trials::{ComparedTrials, TrialVersions};
 use rtf_run::campaign::{self, LoadedCampaign};
 use rtf_run::diagnostics::count;
 use rtf_run::error::Failure;
 use rtf_run::history::campaigns;
+use rtf_run::operator::Attendance;
 use rtf_run::{plan, terminal};
 
+use super::trials;
 use crate::cli::{CampaignRunArgs, Executor, ProfileArgs};
 use crate::command::VerbResult;
 use crate::request::{self, config};
@@ -56,27 +61,38 @@ pub fn run(mut args: CampaignRunArgs, matches: &ArgMatches) -> VerbResult {
         return print_job(&started, &args);
     }
     dir.write_judgement(None)?;
-    let claimed = loaded.campaign.claim.rate;
     let workers = match &dir.description.jobs {
         Some(jobs) => format!("up to {}", count(jobs.shards as usize, "task")),
         None => count(local_workers(&args), "worker"),
     };
-    let episodes = count(loaded.episodes.episodes.len(), "episode");
-    let name = escape::line(&loaded.name);
-    terminal::stdout(|out| {
-        writeln!(out, "campaign {name}: {episodes}, {workers}, claim rate >= {claimed}")
-    })?;
+    print_start(loaded, &workers)?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let end = runtime.map_err(Failure::internal)?.block_on(coordinate(&started, &args))?;
-    let CampaignEnd { ledger, judgement, early_end } = end;
+    let CampaignEnd { ledger, mut judgement, early_end } = end;
     dir.write_results(&summary::result_lines(&ledger, dir.recorded()))?;
     let end = history_end(early_end.as_ref());
+    let compared = ComparedTrials::judge(dir, &ledger, &mut judgement)?;
     dir.write_judgement(Some(&Judged { ended_at: Timestamp::now(), end, judgement }))?;
     summary::print(&loaded.campaign, (&ledger, &judgement), early_end.as_ref(), &dir.path)?;
-    if let Some(target) = target {
+    trials::print(dir, compared.as_ref(), judgement.verdict)?;
+    if let Some(target) = target.filter(|_| dir.versions().is_none()) {
         campaigns::import_ended(&target, dir);
     }
     Ok(ExitCode::from(summary::exit_code(&judgement, early_end.as_ref())))
+}
+
+fn print_start(loaded: &LoadedCampaign, workers: &str) -> Result<(), Failure> {
+    let LoadedCampaign { name, campaign, episodes, .. } = loaded;
+    let episodes = count(episodes.episodes.len(), campaign.noun());
+    let goal = match &campaign.goal {
+        Goal::Claim(claim) => format!("claim rate >= {}", claim.rate),
+        Goal::Versions(Versions { values, blinded, .. }) => {
+            let blinded = if *blinded { " (blinded)" } else { "" };
+            format!("{}{blinded}", count(values.len(), "version"))
+        }
+    };
+    let name = escape::line(name);
+    terminal::stdout(|out| writeln!(out, "campaign {name}: {episodes}, {workers}, {goal}"))
 }
 
 /// Prints the manifest of the first job, which the user submits.
@@ -111,18 +127,36 @@ fn local_workers(args: &CampaignRunArgs) -> usize {
     args.workers.map_or(1, |workers| usize::from(workers.get()))
 }
 
+/// Who answers the questions of workers on this machine.
+fn answers(args: &CampaignRunArgs) -> Answers {
+    match args.no_input {
+        true => Answers::NoInput,
+        false if Attendance::find(false, None).console => Answers::Operator,
+        false => Answers::Nobody,
+    }
+}
+
 /// Runs the episodes that have no result in a pool of workers.
 async fn coordinate(started: &Started, args: &CampaignRunArgs) -> Result<CampaignEnd, Failure> {
     let Started { loaded, dir, lock, is_resumed } = started;
     let signals = SignalListener::install().map_err(Failure::internal)?;
     let read = |is_read: &dyn Fn(u32) -> bool| match is_resumed {
-        true => campaign::read_ledger(loaded, dir, is_read),
+        true => {
+            let mut ledger = campaign::read_ledger(loaded, dir, is_read);
+            ledger.resume();
+            ledger
+        }
         false => Ledger::new(loaded.episodes.episodes.len(), loaded.campaign.repeats),
     };
     let (campaign, episodes) = (&loaded.campaign, &loaded.episodes.episodes);
     let Some(settings) = &dir.description.jobs else {
-        let pool = LocalPool::new(dir, local_workers(args), args.shutdown_timeout);
-        return Coordinator::new(campaign, episodes, read(&|_| true), pool)?.run(signals).await;
+        let answers = answers(args);
+        let pool = LocalPool::new(dir, local_workers(args), (args.shutdown_timeout, answers));
+        let mut coordinator = Coordinator::new(campaign, episodes, read(&|_| true), pool)?;
+        if answers == Answers::Operator {
+            coordinator = coordinator.with_operator()?;
+        }
+        return coordinator.run(signals).await;
     };
     let pool = ClusterPool::open(dir, lock, settings, args.shutdown_timeout).await?;
     let followed: BTreeSet<u32> = pool.assignments().map(|it| it.worker).collect();
@@ -206,6 +240,7 @@ pub fn describe(
         variables: Vec::new(),
         is_search: false,
         jobs: None,
+        versions: loaded.campaign.versions().map(TrialVersions::from),
         start: None,
     };
     Ok((description, planned.plan))

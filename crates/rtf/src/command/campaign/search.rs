@@ -29,6 +29,7 @@ pub fn run(mut args: CampaignSearchArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_past_results(&mut args.results, matches)?;
     let loaded = campaign::load(&args.file)?;
     loaded.print_warnings()?;
+    campaign::refuse_versions(&loaded)?;
     let description = describe_search(&loaded, &args.file, &args.profile)?;
     let dir = CampaignDir::create(&args.results.results.join("searches"), description, None)?;
     let mut pool = StreamPool::new(&dir, args.workers.get().into(), args.shutdown_timeout)?;

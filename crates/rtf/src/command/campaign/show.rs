@@ -10,12 +10,14 @@ use rtf_campaign::{EpisodeResult, Judge};
 use rtf_coordinator::summary;
 use rtf_report::{escape, output_file};
 use rtf_run::campaign::directory::CampaignDir;
+use rtf_run::campaign::trials::ComparedTrials;
 use rtf_run::error::Failure;
 use rtf_run::formats::ReportFormat;
 use rtf_run::{campaign, reports, terminal};
 use rtf_web::html_report;
 use serde_json::json;
 
+use super::trials;
 use crate::cli::{CampaignShowArgs, CampaignShowFormat};
 use crate::command::VerbResult;
 use crate::request::config;
@@ -26,6 +28,10 @@ pub fn run(args: &CampaignShowArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_past_results(&mut results, matches)?;
     let newest = || results.results.join("campaigns").join("latest");
     let path = args.dir.clone().unwrap_or_else(newest);
+    if args.unblind {
+        let dir = CampaignDir::open_judged(&path)?;
+        dir.unblind(&campaign::stored_ledger(&dir, dir.episodes()?.episodes.len()))?;
+    }
     if args.format == CampaignShowFormat::Html {
         return write_page(&CampaignDir::open(&path)?, args.output.as_deref());
     }
@@ -33,10 +39,12 @@ pub fn run(args: &CampaignShowArgs, matches: &ArgMatches) -> VerbResult {
         return Err(Failure::input("`--output` is for `--format html`"));
     }
     let (loaded, dir, ledger) = campaign::read_results(&path)?;
-    let episodes = &loaded.episodes.episodes;
+    let is_hidden = dir.hides_versions(&ledger);
+    let episodes = &dir.shown_episodes(loaded.episodes.episodes.clone(), is_hidden);
     let judge = Judge::new(&loaded.campaign, episodes.len());
     let judge = judge.ok_or_else(|| Failure::internal("the claim cannot be judged"))?;
-    let judgement = judge.judge(&ledger.results());
+    let mut judgement = judge.judge(&ledger.results());
+    let compared = ComparedTrials::judge(&dir, &ledger, &mut judgement)?;
     let samples = analysis::samples(episodes, &ledger);
     let parameters = analysis::by_parameters(&samples, loaded.campaign.seed);
     let map = map(args, &samples, &parameters)?;
@@ -44,13 +52,14 @@ pub fn run(args: &CampaignShowArgs, matches: &ArgMatches) -> VerbResult {
         let count = |result| ledger.count(result);
         let document = json!({
             "name": loaded.name,
-            "claim": loaded.campaign.claim.rate,
+            "claim": loaded.campaign.claim().map(|claim| claim.rate),
+            "versions": compared.as_ref().map(|it| &it.comparison),
             "episodes": episodes.len(),
             "passed": count(EpisodeResult::Passed),
             "failed": count(EpisodeResult::Failed),
             "without_result": count(EpisodeResult::None),
             "judgement": judgement,
-            "more_episodes": judge.more_episodes(&judgement),
+            "more_episodes": loaded.campaign.claim().and_then(|_| judge.more_episodes(&judgement)),
             "parameters": parameters,
             "map": map,
         });
@@ -59,6 +68,7 @@ pub fn run(args: &CampaignShowArgs, matches: &ArgMatches) -> VerbResult {
         return Ok(ExitCode::SUCCESS);
     }
     summary::print(&loaded.campaign, (&ledger, &judgement), None, &dir.path)?;
+    trials::print(&dir, compared.as_ref(), judgement.verdict)?;
     terminal::stdout(|out| {
         parameters.iter().try_for_each(|parameter| print_parameter(out, parameter))?;
         map.iter().try_for_each(|map| print_map(out, map, &args.map))

@@ -30,6 +30,7 @@ use crate::request::config;
 pub fn run(mut args: CampaignShrinkArgs, matches: &ArgMatches) -> VerbResult {
     config::fill_past_results(&mut args.results, matches)?;
     let (loaded, description, episode) = find(&args)?;
+    campaign::refuse_versions(&loaded)?;
     let changes = changes(&loaded.ranges, &episode)?;
     let dir = CampaignDir::create(&args.results.results.join("shrinks"), description, None)?;
     let mut pool = StreamPool::new(&dir, 1, args.shutdown_timeout)?;
