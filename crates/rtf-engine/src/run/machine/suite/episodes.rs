@@ -94,10 +94,18 @@ impl SuiteMachine<'_> {
         }
     }
 
+    /// Hides what blinded trials must not show, which is the same for all of them.
+    fn hide_versions(&self, cx: &mut Context<'_>) {
+        let masked = self.episodes.peek().map(|first| first.masked.clone()).unwrap_or_default();
+        if !masked.is_empty() {
+            cx.begin_episode(Episode { masked, ..Episode::new(0, 0, Vec::new()) });
+        }
+    }
+
     /// Begins the next round with an episode, if there is one.
     pub(super) fn begin_episode(&mut self, cx: &mut Context<'_>) {
         if self.episodes.is_batch {
-            return;
+            return self.hide_versions(cx);
         }
         let Some(episode) = self.episodes.take() else { return };
         (self.episodes.running, self.episodes.is_ending) = (Some(episode.id), false);

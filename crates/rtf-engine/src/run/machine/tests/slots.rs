@@ -131,6 +131,18 @@ fn an_episode_alone_runs_with_no_other_one() {
 }
 
 #[test]
+fn blinded_trials_do_not_show_their_versions() {
+    let mut plan = plan(2, 2);
+    let mut episodes = plan.episodes.to_vec();
+    episodes.iter_mut().for_each(|episode| episode.masked = vec!["1.5".to_owned()]);
+    plan.episodes = episodes.into();
+    let mut world = running(&plan);
+    begin(&mut world, 1, 1);
+    let started = world.log.last().cloned().unwrap_or_default();
+    assert!(started.contains("mass") && !started.contains("1.5"), "{started}");
+}
+
+#[test]
 fn of_several_open_episodes_none_has_a_result_when_the_process_ends() {
     let plan = plan(2, 4);
     let mut world = running(&plan);
