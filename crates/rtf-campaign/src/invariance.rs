@@ -1,5 +1,6 @@
-//! Whether results depend on how episodes are run: the same episodes in other ways, compared with the
-//! first one.
+//! Whether results depend on how episodes are run: the same episodes in other ways, compared with one
+//! after the other. That is the only way without chance: which episodes run at the same time depends on
+//! the load of the machine.
 
 use std::collections::BTreeMap;
 
@@ -19,19 +20,20 @@ const LISTED: usize = 10;
 pub enum Variation {
     /// As before.
     Again,
-    /// One at a time.
-    OneSlot,
+    /// Several at a time.
+    ManySlots,
     /// The last one first.
     OtherOrder,
     /// On two workers.
     TwoWorkers,
-    /// Vector environments that are synchronous are asynchronous, and the other way round.
+    /// Several at a time; vector environments that are synchronous are asynchronous, and the other way
+    /// round.
     OtherMode,
 }
 
 impl Variation {
     pub const ALL: [Self; 5] =
-        [Self::Again, Self::OneSlot, Self::OtherOrder, Self::TwoWorkers, Self::OtherMode];
+        [Self::Again, Self::OtherOrder, Self::ManySlots, Self::TwoWorkers, Self::OtherMode];
 }
 
 /// What is different from the first time.
@@ -61,10 +63,10 @@ pub enum Cause {
     SeedIgnored,
     /// All numbers differ a little.
     BatchArithmetic,
-    /// An environment depends on the others that run at the same time.
+    /// An episode depends on those that run at the same time.
     SharedBetweenSlots,
     /// An episode depends on those that ran before it.
-    LeftByEarlierEpisodes,
+    StateOutlivesEpisodes,
     /// The environments depend on how they are run: in one process or in several.
     SharedInProcess,
     /// Workers that run at the same time affect each other.
@@ -105,21 +107,21 @@ impl Compared {
     }
 }
 
-/// Compares each variation with the first time. `confirmed`: the same variation twice, with results that
-/// are the same if results are exact. `alpha`: the probability of any wrong claim about results that are
-/// not the same twice.
+/// Compares each variation with the first time. `confirmation`: the first way once more, because a few
+/// results can be the same by luck. `alpha`: the probability of any wrong claim about results that are not
+/// the same twice.
 #[must_use]
 pub fn judge(
     first: &[ComparedEpisode],
     variations: &[(Variation, Vec<ComparedEpisode>)],
-    confirmed: Option<[&[ComparedEpisode]; 2]>,
+    confirmation: Option<&[ComparedEpisode]>,
     alpha: f64,
 ) -> Invariance {
     let mut all: Vec<Compared> =
         variations.iter().map(|(variation, second)| compare(*variation, first, second)).collect();
     let again = all.iter().find(|it| it.result.variation == Variation::Again);
     let is_exact = again.is_some_and(Compared::is_same)
-        && confirmed.is_none_or(|[one, other]| compare(Variation::Again, one, other).is_same());
+        && confirmation.is_none_or(|third| compare(Variation::Again, first, third).is_same());
     if is_exact {
         all.iter_mut().for_each(|it| it.result.changes_results = it.result.changed > 0);
     } else {
@@ -193,19 +195,16 @@ fn causes(all: &[Compared], is_exact: bool) -> Vec<Cause> {
     if changes(Variation::Again) {
         return vec![Cause::Chance];
     }
-    let one_slot = all.iter().find(|it| it.result.variation == Variation::OneSlot);
     let is_arithmetic = |it: &Compared| {
-        let some = it.result.measure_differently > 0;
-        some && it.largest < ARITHMETIC
+        let is_batch = it.result.variation == Variation::ManySlots;
+        is_exact && is_batch && it.result.measure_differently > 0 && it.largest < ARITHMETIC
     };
     let mut causes = Vec::new();
-    if changes(Variation::OneSlot) {
-        causes.push(match one_slot {
-            Some(it) if is_exact && is_arithmetic(it) => Cause::BatchArithmetic,
-            _ => Cause::SharedBetweenSlots,
-        });
-    } else if changes(Variation::OtherOrder) {
-        causes.push(Cause::LeftByEarlierEpisodes);
+    if changes(Variation::OtherOrder) {
+        causes.push(Cause::StateOutlivesEpisodes);
+    } else if changes(Variation::ManySlots) {
+        let arithmetic = all.iter().any(is_arithmetic);
+        causes.push(if arithmetic { Cause::BatchArithmetic } else { Cause::SharedBetweenSlots });
     } else if changes(Variation::OtherMode) {
         causes.push(Cause::SharedInProcess);
     } else if changes(Variation::TwoWorkers) {
@@ -213,3 +212,6 @@ fn causes(all: &[Compared], is_exact: bool) -> Vec<Cause> {
     }
     causes
 }
+
+#[cfg(test)]
+mod tests;

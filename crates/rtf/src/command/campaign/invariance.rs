@@ -43,10 +43,16 @@ pub fn run(mut args: CampaignInvarianceArgs, matches: &ArgMatches) -> VerbResult
     let tests = plan.suites.iter().flat_map(|suite| &suite.tests);
     let has_slots = tests.into_iter().any(|test| test.slots.is_some());
     let all = complete(&loaded.campaign);
-    let mut lab =
-        Lab { args: &args, loaded: &loaded, campaign: &all, description, runs: Vec::new() };
+    let mut lab = Lab {
+        args: &args,
+        loaded: &loaded,
+        campaign: &all,
+        description,
+        has_slots,
+        runs: Vec::new(),
+    };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    let found = runtime.map_err(Failure::internal)?.block_on(lab.vary(has_slots))?;
+    let found = runtime.map_err(Failure::internal)?.block_on(lab.vary())?;
     let found = match found {
         Ok(found) => found,
         Err(signal) => return Ok(ExitCode::from(exit::of_signal(signal))),
@@ -80,14 +86,16 @@ struct Lab<'a> {
     loaded: &'a LoadedCampaign,
     campaign: &'a Campaign,
     description: Description,
+    has_slots: bool,
     /// What has run, and where its results are.
     runs: Vec<(&'static str, PathBuf)>,
 }
 
 impl Lab<'_> {
     /// Runs all variations; the number of the signal that ended them.
-    async fn vary(&mut self, has_slots: bool) -> Result<Result<Invariance, i32>, Failure> {
-        let needs_slots = [Variation::OneSlot, Variation::OtherMode];
+    async fn vary(&mut self) -> Result<Result<Invariance, i32>, Failure> {
+        let needs_slots = [Variation::ManySlots, Variation::OtherMode];
+        let has_slots = self.has_slots;
         let wanted = Variation::ALL.into_iter().filter(|it| has_slots || !needs_slots.contains(it));
         let first = match self.run("first", None).await? {
             Ok(first) => first,
@@ -101,12 +109,11 @@ impl Lab<'_> {
             }
         }
         let found = judge(&first, &variations, None, self.args.alpha);
-        let changed = variations.iter().zip(&found.variations).find(|(_, it)| it.changes_results);
-        let Some(((variation, once), _)) = changed.filter(|_| found.is_exact) else {
+        if !found.is_exact || !found.variations.iter().any(|it| it.changes_results) {
             return Ok(Ok(found));
-        };
-        Ok(match self.run("confirmation", Some(*variation)).await? {
-            Ok(twice) => Ok(judge(&first, &variations, Some([once, &twice]), self.args.alpha)),
+        }
+        Ok(match self.run("confirmation", Some(Variation::Again)).await? {
+            Ok(third) => Ok(judge(&first, &variations, Some(&third), self.args.alpha)),
             Err(signal) => Err(signal),
         })
     }
@@ -122,7 +129,8 @@ impl Lab<'_> {
             terminal::stderr(|err| writeln!(err, "{name}: {episodes}"))?;
         }
         let mut description = self.description.clone();
-        if variation == Some(Variation::OneSlot) {
+        let has_many_slots = [Variation::ManySlots, Variation::OtherMode];
+        if self.has_slots && !variation.is_some_and(|it| has_many_slots.contains(&it)) {
             description.options.retain(|option| !option.starts_with("--slots="));
             description.options.push("--slots=1".to_owned());
         }
@@ -157,8 +165,8 @@ impl Lab<'_> {
 fn name(variation: Variation) -> &'static str {
     match variation {
         Variation::Again => "again",
-        Variation::OneSlot => "one slot",
         Variation::OtherOrder => "other order",
+        Variation::ManySlots => "many slots",
         Variation::TwoWorkers => "two workers",
         Variation::OtherMode => "other mode",
     }
@@ -218,9 +226,12 @@ fn explain(cause: Cause) -> &'static str {
         Cause::BatchArithmetic => {
             "arithmetic depends on the number of slots: all values differ a little"
         }
-        Cause::SharedBetweenSlots => "environments in different slots share state",
-        Cause::LeftByEarlierEpisodes => {
-            "an episode depends on those before it: they leave state in the environment or the policy"
+        Cause::SharedBetweenSlots => {
+            "an episode depends on those that run at the same time: slots share state"
+        }
+        Cause::StateOutlivesEpisodes => {
+            "an episode depends on those before it: they leave state in an environment, in the policy, \
+             or in what slots share"
         }
         Cause::SharedInProcess => {
             "environments depend on their process: they share state in it, or need what it has"
