@@ -102,6 +102,11 @@ class Episode:
         outcome = None if passed is None else "passed"
         self._owner.end(self, "timed-out" if limit else outcome, limit)
 
+    def observe(self, observation: Any) -> None:
+        """Record the first observation, as `finish` does; further calls have no effect."""
+        if self._first_observation is None:
+            self.record(None, None, observation)
+
     def record(self, steps: int | None, time: float | None, first_observation: Any) -> None:
         """Record what its end reports: see `finish`."""
         if steps is not None:

@@ -89,6 +89,17 @@ def test_samples_of_interleaved_episodes_are_sent_in_batches(tmp_path: Path) -> 
     assert len(batches) < 150
 
 
+def test_the_first_observation_of_a_generator(tmp_path: Path) -> None:
+    body = episode_test(
+        "def episode(self, episode):\n"
+        "    for step in range(3):\n"
+        "        episode.observe([episode.seed // 20, step])\n        yield\n"
+    )
+    runner = run_episodes(tmp_path, body, [1, 2, 3], slots=2)
+    hashes = [it.end["first_observation"] for _, it in sorted(runner.results.items())]
+    assert hashes[0] != hashes[1] == hashes[2]
+
+
 @pytest.mark.parametrize(
     ("end", "verdict", "reason"),
     [

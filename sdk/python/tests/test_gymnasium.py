@@ -62,12 +62,10 @@ def seeded(count: int, **parameters: str) -> list[dict[str, Any]]:
     return [{"id": n, "seed": 7 * n, "parameters": parameters} for n in range(1, count + 1)]
 
 
-def with_fault(fault: str, *, first: bool) -> list[dict[str, Any]]:
-    """Return six episodes, of which one has a fault."""
-    broken = 1 if first else 4
+def with_faults(*faults: str) -> list[dict[str, Any]]:
+    """Return an episode for each fault; an empty one is none."""
     return [
-        {"id": n, "seed": n, "parameters": {"fault": fault if n == broken else ""}}
-        for n in range(1, 7)
+        {"id": n, "seed": n, "parameters": {"fault": fault}} for n, fault in enumerate(faults, 1)
     ]
 
 
@@ -169,41 +167,39 @@ def test_slots_without_an_episode_repeat_one_that_runs(tmp_path: Path) -> None:
     assert all(text.endswith((": 1", ": 3")) for _, text in runner.outside)
 
 
+FAULTS = {
+    "step": "ValueError: a gear is broken",
+    "reset": "ValueError: it is stuck",
+    "nan at once": "the first observation contains NaN",
+    "nan": "the observation after step 2 contains NaN",
+    "reward": "the reward of step 2 is NaN",
+    "four": "ValueError: `step` returned 4 results, expected 5: observation, reward, terminated,"
+    " truncated, info",
+    "shape": "ValueError: `step` returned an observation of the shape (3,), expected (2,)",
+}
+
+
 @pytest.mark.parametrize("asynchronous", [False, True])
-@pytest.mark.parametrize("first", [False, True])
-@pytest.mark.parametrize(
-    ("fault", "text"),
-    [
-        ("step", "ValueError: a gear is broken"),
-        ("reset", "ValueError: it is stuck"),
-        ("nan at once", "the first observation contains NaN"),
-        ("nan", "the observation after step 2 contains NaN"),
-        ("reward", "the reward of step 2 is NaN"),
-        ("four", ("ValueError: `step` returned 4 results, expected 5: observation, reward,"
-                 " terminated, truncated, info")),
-        ("shape", "ValueError: `step` returned an observation of the shape (3,), expected (2,)"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize("first", ["", "step", "reset", "nan at once"])
 def test_what_breaks_in_one_environment_is_an_error_of_its_episode(
-    tmp_path: Path, fault: str, text: str, *, first: bool, asynchronous: bool
+    tmp_path: Path, first: str, *, asynchronous: bool
 ) -> None:
     body = f"{LINE}{TEST}    asynchronous = {asynchronous}\n"
-    runner = run_episodes(tmp_path, body, with_fault(fault, first=first), slots=3)
-    expected = ["passed"] * 6
-    broken = 1 if first else 4
-    expected[broken - 1] = "error"
-    assert runner.verdicts() == expected
-    assert runner.results[broken].messages == [("error", text)]
+    faults = [first, "", *(one for fault in FAULTS for one in (fault, ""))]
+    runner = run_episodes(tmp_path, body, with_faults(*faults), slots=3)
+    assert runner.verdicts() == ["error" if fault else "passed" for fault in faults]
+    for number, fault in enumerate(faults, 1):
+        expected = [("error", FAULTS[fault])] if fault else []
+        assert runner.results[number].messages == expected
     assert runner.outside == []
-    if fault == "step":
-        (message,) = runner.host.of("message")
-        assert message["location"]["file"] == str(tmp_path / "plugin.py")
-        assert 'raise ValueError("a gear is broken")' in message["text"]
+    (broken, *_) = (it for it in runner.host.of("message") if "a gear is broken" in it["text"])
+    assert broken["location"]["file"] == str(tmp_path / "plugin.py")
+    assert 'raise ValueError("a gear is broken")' in broken["text"]
 
 
 def test_the_end_of_an_environments_process(tmp_path: Path) -> None:
     body = f"{LINE}{TEST}    asynchronous = True\n"
-    runner = run_episodes(tmp_path, body, with_fault("crash", first=True), slots=3)
+    runner = run_episodes(tmp_path, body, with_faults("crash", "", "", ""), slots=3)
     assert runner.results[1].outcome == "crashed"
     assert runner.results[1].reason == "the process of its environment ended with SIGSEGV"
     for other in (2, 3):
@@ -217,7 +213,7 @@ def test_the_end_of_an_environments_process(tmp_path: Path) -> None:
 def test_an_exception_of_a_vector_environment_is_one_of_all_episodes(tmp_path: Path) -> None:
     for slots, where in ((3, ", in one of 3 slots"), (1, "")):
         body = vector_envs(f"return {of_lines()}")
-        runner = run_episodes(tmp_path, body, with_fault("step", first=True), slots=slots)
+        runner = run_episodes(tmp_path, body, with_faults("step", "", "", ""), slots=slots)
         assert runner.verdicts() == ["error"] * slots
         reason = f"`step` raised ValueError: a gear is broken{where}"
         assert {it.reason for it in runner.results.values()} == {reason}
@@ -339,7 +335,7 @@ def test_nested_spaces(tmp_path: Path) -> None:
         "np.ones((self.slots, 1))",
         "{'move': np.ones((self.slots, 1)), 'grip': np.zeros(self.slots, np.int64)}",
     )
-    episodes = with_fault("late", first=False)
+    episodes = with_faults("", "", "", "late", "", "")
     runner = run_episodes(tmp_path, LINE + SPACES + test, episodes, slots=3)
     assert runner.verdicts() == ["passed"] * 3 + ["error"] + ["passed"] * 2
     text = "the observation after step 3 contains NaN"
@@ -389,37 +385,52 @@ def test_an_exception_of_the_policy(tmp_path: Path) -> None:
     }
 
 
-@pytest.mark.parametrize(
-    ("judge", "verdict", "problem"),
-    [
-        ("return end.steps > 0", "passed", None),
-        ("return np.bool_(end.steps == 0)", "failed", None),
-        ("return 'too slow'", "failed", "too slow"),
-        ("return self.check(False, 'it stands')", "failed", "it stands"),
-        ("self.skip('no target')", "skipped", "no target"),
-        ("raise ValueError('42')", "error", "ValueError: 42"),
-        ("pass", "error", "TypeError: `judge` returned None, expected a truth or a text"),
-        ("return end.reward", "error",
-         "TypeError: `judge` returned -6.5, expected a truth or a text"),
-        ("end.info.pop('is_success'); return super().judge(end)", "error",
-         ("the environment reports neither `is_success` nor `success` in the `info` of the last"
-         " step, but `energy`: write `judge(self, end)`")),
-        ("end.info['success'] = end.info.pop('is_success'); return super().judge(end)", "passed",
-         None),
-    ],
-)  # fmt: skip
-def test_judgements(tmp_path: Path, judge: str, verdict: str, problem: str | None) -> None:
-    body = (
-        f"{LINE}{TEST}    def judge(self, end):\n"
-        f"        if end.episode.id == 2: return True\n        {judge}\n"
+JUDGES = [
+    ("return end.steps > 0", "passed", None),
+    ("return np.bool_(end.steps == 0)", "failed", None),
+    ("return 'too slow'", "failed", "too slow"),
+    ("return self.check(False, 'it stands')", "failed", "it stands"),
+    ("self.skip('no target')", "skipped", "no target"),
+    ("raise ValueError('42')", "error", "ValueError: 42"),
+    ("pass", "error", "TypeError: `judge` returned None, expected a truth or a text"),
+    (
+        "return end.reward",
+        "error",
+        "TypeError: `judge` returned -6.5, expected a truth or a text",
+    ),
+    (
+        "end.info.pop('is_success'); return super().judge(end)",
+        "error",
+        (
+            "the environment reports neither `is_success` nor `success` in the `info` of the last"
+            " step, but `energy`: write `judge(self, end)`"
+        ),
+    ),
+    (
+        "end.info['success'] = end.info.pop('is_success'); return super().judge(end)",
+        "passed",
+        None,
+    ),
+]
+
+
+def test_judgements(tmp_path: Path) -> None:
+    judges = "".join(
+        f"    def judge_{n}(self, end):\n        {judge}\n"
+        for n, (judge, _, _) in enumerate(JUDGES, 1)
     )
-    episodes: list[Any] = [{"id": n, "seed": 11, "parameters": {}} for n in (1, 2)]
-    runner = run_episodes(tmp_path, body, episodes, slots=2)
-    assert runner.verdicts() == [verdict, "passed"]
-    result = runner.results[1]
-    texts = [text for _, text in result.messages]
-    assert problem in [*texts, result.reason]
-    assert result.end["steps"] == 13
+    choice = "        return getattr(self, f'judge_{end.episode.id}')(end)\n"
+    body = f"{LINE}{TEST}{judges}    def judge(self, end):\n{choice}"
+    body = body.replace("super().judge", "super(Arm, self).judge")
+    episodes: list[Any] = [
+        {"id": n, "seed": 11, "parameters": {}} for n in range(1, len(JUDGES) + 1)
+    ]
+    runner = run_episodes(tmp_path, body, episodes, slots=4)
+    assert runner.verdicts() == [verdict for _, verdict, _ in JUDGES]
+    for number, (_, _, problem) in enumerate(JUDGES, 1):
+        result = runner.results[number]
+        assert problem in [*(text for _, text in result.messages), result.reason]
+        assert result.end["steps"] == 13
     assert runner.outside == []
 
 
