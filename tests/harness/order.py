@@ -66,20 +66,25 @@ def recorded() -> Durations:
 def longest_first(items: list[pytest.Item], config: pytest.Config) -> None:
     """Sorts tests by the sums of their groups.
 
-    A test without a record is long if it is marked as `first`. While a worker runs a test, it
+    Without a record, a test takes what its mark `first` declares. While a worker runs a test, it
     already has the next one: the shortest ones follow those that the workers start with.
     """
     durations = config.stash[RECORDED]
     sums: defaultdict[str, float] = defaultdict(float)
     for item in items:
-        unknown = float("inf") if item.get_closest_marker("first") else 0.0
-        sums[group(item)] += durations.get(item.nodeid, unknown)
+        sums[group(item)] += durations.get(item.nodeid, declared(item))
     groups = sorted(sums, key=lambda each: -sums[each])
     workers = getattr(config, "workerinput", {}).get("workercount", 0)
     shortest = groups[max(workers, len(groups) - workers) :]
     places: dict[str, float] = {each: place for place, each in enumerate(groups)}
     places |= dict.fromkeys(shortest, workers - 0.5)
     items.sort(key=lambda item: places[group(item)])
+
+
+def declared(item: pytest.Item) -> float:
+    """The seconds that the mark `first` declares."""
+    marker = item.get_closest_marker("first")
+    return 60.0 * (marker.args[0] if marker.args else 1) if marker else 0.0
 
 
 def group(item: pytest.Item) -> str:
