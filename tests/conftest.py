@@ -35,9 +35,11 @@ collect_ignore = [
     "predecessor/project",
 ]
 
+ALL_TARGETS = ["--bins", "--tests", "--examples"]
 BUILDS = {
     "release": ["tools/build.sh"],
-    "debug": ["cargo", "build", "--quiet", "--workspace", "--locked"],
+    # With the tests, which change features of libraries: nothing is compiled again for them.
+    "debug": ["cargo", "build", "--quiet", "--locked", "--workspace", *ALL_TARGETS],
 }
 RUN = uuid.uuid4().hex
 
@@ -90,7 +92,7 @@ def rtf(request: pytest.FixtureRequest) -> str:
 
 @pytest.fixture(scope="session")
 def debug_rtf(request: pytest.FixtureRequest) -> str:
-    """The program as `cargo build` makes it."""
+    """The program as `cargo test` makes it."""
     return built(request.config, "debug")
 
 
