@@ -14,6 +14,7 @@ import uuid
 from collections.abc import Generator
 
 import network
+import order
 import pytest
 from checkout import BUILD, ROOT, STARTED_WITH, TARGET, exports, venv
 
@@ -34,9 +35,11 @@ collect_ignore = [
     "predecessor/project",
 ]
 
+ALL_TARGETS = ["--bins", "--tests", "--examples"]
 BUILDS = {
     "release": ["tools/build.sh"],
-    "debug": ["cargo", "build", "--quiet", "--workspace", "--locked"],
+    # With the tests, which change features of libraries: nothing is compiled again for them.
+    "debug": ["cargo", "build", "--quiet", "--locked", "--workspace", *ALL_TARGETS],
 }
 RUN = uuid.uuid4().hex
 
@@ -46,17 +49,22 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--no-build", action="store_true", help="take rtf as it is in target/")
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """Adds the record of durations."""
+    config.pluginmanager.register(order)
+
+
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Starts what takes longest before the others, so that no processor idles at the end.
+def pytest_collection_modifyitems(items: list[pytest.Item], config: pytest.Config) -> None:
+    """Starts what takes longest before the others.
 
     Tests that share something of their module run in one process, which makes it once.
     """
-    items.sort(key=lambda item: item.get_closest_marker("first") is None)
     for item in (each for each in items if isinstance(each, pytest.Function)):
         definitions = item._fixtureinfo.name2fixturedefs.values()
         if any(each[-1].scope == "module" for each in definitions):
             item.add_marker(pytest.mark.xdist_group(item.nodeid.partition("::")[0]))
+    order.longest_first(items, config)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
@@ -84,7 +92,7 @@ def rtf(request: pytest.FixtureRequest) -> str:
 
 @pytest.fixture(scope="session")
 def debug_rtf(request: pytest.FixtureRequest) -> str:
-    """The program as `cargo build` makes it."""
+    """The program as `cargo test` makes it."""
     return built(request.config, "debug")
 
 

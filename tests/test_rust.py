@@ -2,21 +2,39 @@
 
 from __future__ import annotations
 
+import json
 import os
 
 import pytest
 from checkout import TARGET, call, need_packages, output_of
 
 
-@pytest.mark.first
+def targets(part: str) -> list[str]:
+    """Options of cargo: the end-to-end tests, all others, or those in the documentation."""
+    if part != "crates":
+        return {"e2e": ["--test", "e2e"], "documentation": ["--doc"]}[part]
+    metadata = json.loads(output_of("cargo", "metadata", "--no-deps", "--format-version=1"))
+    found = {
+        f"--{target['kind'][0]}={target['name']}"
+        for package in metadata["packages"]
+        for target in package["targets"]
+        if target["test"] and target["kind"][0] in {"bin", "test"}
+    }
+    return ["--lib", *sorted(found - {"--test=e2e"})]
+
+
+@pytest.mark.first(30)
+# An interpreter without the user's packages starts in a third of the time, thousands of times.
+@pytest.mark.venv("test")
 @pytest.mark.usefixtures("debug_rtf")
-def test_workspace() -> None:
+@pytest.mark.parametrize("part", ["e2e", "crates", "documentation"])
+def test_workspace(part: str) -> None:
     """All crates; `cargo test -p CRATE NAME` runs one test."""
     # Many tests wait for processes, so more of them than processors run at the same time. `nohup`
     # passes an ignored SIGHUP on, and `rtf` respects it; some tests send SIGHUP.
     threads = str(3 * (os.cpu_count() or 1))
     command = "env --default-signal=HUP cargo test --workspace --locked --no-fail-fast"
-    call(*command.split(), RUST_TEST_THREADS=threads)
+    call(*command.split(), *targets(part), RUST_TEST_THREADS=threads)
 
 
 @pytest.mark.first

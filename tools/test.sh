@@ -38,5 +38,5 @@ for argument in "$@"; do
   esac
 done
 # More checks than processors, because most wait. A group is for what must not run twice at a time.
-[ -z "$where" ] || options+=(-n "$((2 * JOBS))" --dist loadgroup --no-loadscope-reorder)
+[ -z "$where" ] || options+=(-n "$((3 * JOBS))" --dist loadgroup --no-loadscope-reorder)
 "$checkers/pytest" "${options[@]}" "$@" ${where:+"$where"}

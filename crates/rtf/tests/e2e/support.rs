@@ -219,12 +219,17 @@ impl Running {
     /// Waits until the journal holds an event, which is returned.
     pub fn wait_for(&self, wanted: impl Fn(&EventKind) -> bool) -> Event {
         let path = self.folder.join("rtf-results/latest/events.jsonl");
+        // The events that were looked at. The next run has another journal.
+        let mut seen = String::new();
         wait_until("an event in the journal", || {
             let text = std::fs::read_to_string(&path).ok()?;
-            let whole = text.rsplit_once('\n')?.0;
-            let events =
-                whole.lines().map(|line| serde_json::from_str::<Event>(line).expect("an event"));
-            events.into_iter().find(|event| wanted(&event.kind))
+            let whole = &text[..=text.rfind('\n')?];
+            let new = whole.strip_prefix(&*seen).unwrap_or(whole);
+            let mut events =
+                new.lines().map(|line| serde_json::from_str::<Event>(line).expect("an event"));
+            let found = events.find(|event| wanted(&event.kind));
+            seen = whole.to_owned();
+            found
         })
     }
 
@@ -444,6 +449,10 @@ fn ada_compiler() -> &'static Path {
     FOUND.get_or_init(|| {
         let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ada.cgpr");
         run_quietly(Command::new("gprconfig").args(["--batch", "--config=ada", "-o"]).arg(&file));
+        // The objects of a plug-in are listed one by one. Without this, each `nm` loads LLVM.
+        let found = std::fs::read_to_string(&file).expect("a configuration");
+        let lister = r#"("nm", "-g", "--plugin=/dev/null")"#;
+        std::fs::write(&file, found.replace(r#"("nm", "-g")"#, lister)).expect("the same");
         file
     })
 }
