@@ -9,7 +9,7 @@ use std::ffi::{c_char, c_int, c_void};
 /// The version that a plug-in and its host must share.
 pub const RTF_ABI_MAJOR: u32 = 1;
 /// Counts the fields that were appended since the major version began.
-pub const RTF_ABI_MINOR: u32 = 4;
+pub const RTF_ABI_MINOR: u32 = 5;
 
 /// The plug-in is a test: `setup`, `run`, `tear_down`.
 pub const RTF_KIND_TEST: i32 = 1;
@@ -273,6 +273,75 @@ pub struct rtf_question {
     pub line: u32,
 }
 
+/// The episode passed, unless a problem was reported in it.
+pub const RTF_EPISODE_PASSED: i32 = 0;
+/// The episode failed: the robot is wrong.
+pub const RTF_EPISODE_FAILED: i32 = 1;
+/// The episode has no result: the bench is wrong.
+pub const RTF_EPISODE_ERROR: i32 = 2;
+/// The episode reached a limit in steps or in simulated time.
+pub const RTF_EPISODE_TIMED_OUT: i32 = 3;
+
+/// How a test runs the episodes of a campaign.
+#[repr(C)]
+#[derive(Debug)]
+pub struct rtf_slots {
+    /// `sizeof(rtf_slots)`. The host does not write fields beyond it.
+    pub size: usize,
+    /// The number of episodes that may be open at the same time, from 1.
+    pub slots: u32,
+    /// Set to 0 by the host; reserved.
+    pub reserved: u32,
+    /// The limit of an episode in steps, 0 if there is none.
+    pub max_steps: u64,
+    /// The limit of an episode in simulated time, in seconds; 0 if there is none.
+    pub max_time: f64,
+}
+
+/// An episode of a campaign that has started.
+#[repr(C)]
+#[derive(Debug)]
+pub struct rtf_episode {
+    /// `sizeof(rtf_episode)`. The host does not write fields beyond it.
+    pub size: usize,
+    /// The number, from 1.
+    pub id: u64,
+    /// The seed for its random numbers: from 0 to 2³¹ − 1.
+    pub seed: u32,
+    /// Set to 0 by the host; reserved.
+    pub reserved: u32,
+    /// Its parameters.
+    pub parameters: *const rtf_parameter,
+    /// The number of entries of `parameters`.
+    pub parameter_count: usize,
+}
+
+/// The result of an episode.
+#[repr(C)]
+#[derive(Debug)]
+pub struct rtf_episode_end {
+    /// `sizeof(rtf_episode_end)`.
+    pub size: usize,
+    /// `RTF_EPISODE_PASSED`, `RTF_EPISODE_FAILED`, `RTF_EPISODE_ERROR` or
+    /// `RTF_EPISODE_TIMED_OUT`.
+    pub outcome: i32,
+    /// Always 0; reserved.
+    pub reserved: u32,
+    /// Why it did not pass; empty if the messages in the episode contain it.
+    pub reason: rtf_text,
+    /// How many steps it took; negative if unknown.
+    pub steps: i64,
+    /// Its duration in simulated time, in seconds; negative or not a number if unknown.
+    pub time: f64,
+    /// At most 64 characters that are the same if the first observation is the same, such as a
+    /// hash; empty if unknown.
+    pub first_observation: rtf_text,
+    /// The source file for an error of the call, null if unknown.
+    pub file: *const c_char,
+    /// The line in it, 0 if unknown.
+    pub line: u32,
+}
+
 /// An attempt of a test.
 #[repr(C)]
 #[derive(Debug)]
@@ -386,6 +455,27 @@ pub struct rtf_host {
     /// Since 1.4: attaches a picture, which the runner compares with a stored one: a difference is a
     /// failure, and the test continues. Only for tests.
     pub check_picture: unsafe extern "C" fn(context: *mut c_void, check: *const rtf_picture),
+    /// Since 1.5: how the test runs episodes. Returns `RTF_DONE`, or `RTF_REFUSED` if it has no
+    /// `slots` in its suite. Set `size` before.
+    pub slots: unsafe extern "C" fn(context: *mut c_void, slots: *mut rtf_slots) -> i32,
+    /// Since 1.5: starts the next episode, in `run`. Returns `RTF_DONE` with the episode, whose
+    /// parameters are valid until this thread calls the function again, or ends. Returns
+    /// `RTF_REFUSED` if there is none: if `wait` is not 0, no episode follows; otherwise, none has
+    /// arrived, or no slot is free. Returns `RTF_STOPPED` after a stop request, and after an error
+    /// that the host has reported: then return from `run` with `RTF_STOPPED`. Wait only if no
+    /// episode is open that this thread has to finish. Set `size` before.
+    pub take_episode:
+        unsafe extern "C" fn(context: *mut c_void, wait: c_int, episode: *mut rtf_episode) -> i32,
+    /// Since 1.5: from now on, what this thread reports belongs to the episode, as in a case.
+    /// Returns `RTF_DONE`, or `RTF_STOPPED` after an error that the host has reported.
+    pub enter_episode: unsafe extern "C" fn(context: *mut c_void, id: u64) -> i32,
+    /// Since 1.5: this thread leaves the episode, which it has entered last. Returns `RTF_DONE`,
+    /// or `RTF_STOPPED` after an error that the host has reported.
+    pub leave_episode: unsafe extern "C" fn(context: *mut c_void, id: u64) -> i32,
+    /// Since 1.5: finishes an episode, once, in `run`, on any thread, entered or not. Returns
+    /// `RTF_DONE`, or `RTF_STOPPED` after an error that the host has reported.
+    pub finish_episode:
+        unsafe extern "C" fn(context: *mut c_void, id: u64, end: *const rtf_episode_end) -> i32,
 }
 
 /// The plug-in's kind and functions. All functions are called on the

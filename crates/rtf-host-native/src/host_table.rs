@@ -1,6 +1,10 @@
 //! The table of functions that a plug-in gets from its host.
 #![expect(unsafe_code, reason = "called by foreign code with its pointers")]
 
+// `rtf-fuzz` includes this file: without a path, it would look elsewhere.
+#[path = "host_table/episodes.rs"]
+mod episodes;
+
 use std::ffi::{c_char, c_int, c_void};
 use std::time::Duration;
 
@@ -68,6 +72,11 @@ pub(crate) fn for_plugin(session: &Session, plugin: &Plugin) -> &'static rtf_hos
         monitor,
         fault,
         check_picture,
+        slots: episodes::slots,
+        take_episode: episodes::take_episode,
+        enter_episode: episodes::enter_episode,
+        leave_episode: episodes::leave_episode,
+        finish_episode: episodes::finish_episode,
     }))
 }
 

@@ -52,7 +52,7 @@ impl HostPlugin for NativeHost {
             stack,
             supports_shared: true,
             selects_cases: true,
-            runs_episodes: false,
+            runs_episodes: true,
         }
     }
 

@@ -1,13 +1,21 @@
 //! The cases of the running test: their numbers, the open ones on each thread, and the
 //! selected ones.
 
+mod episodes;
+mod error;
+
 use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock};
 
-use rtf_model::protocol::{CaseSelector, Notification};
+use rtf_model::protocol::{CaseSelector, EpisodeSlots, Notification};
 use rtf_model::{CaseId, CaseStart, Outcome, Phase};
 use rustix::process::{Pid, getpid};
+
+pub use self::episodes::EpisodeResult;
+use self::episodes::OpenEpisode;
+pub(crate) use self::error::CaseError;
 
 /// How the body of a case ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,21 +24,6 @@ pub enum CaseEnd {
     Done,
     /// An assertion, an error or a skip that it reported ended it, or a stop request did.
     Stopped,
-}
-
-/// Why a call has no effect.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub(crate) enum CaseError {
-    #[error("cases are allowed in `run` only")]
-    OutsideRun,
-    #[error("cases are planned in `setup` and `run` only")]
-    PlannedElsewhere,
-    #[error("`skip` is allowed in `setup` and `run` only")]
-    SkippedElsewhere,
-    #[error("the names or parameters of cases are longer than a line of the protocol")]
-    TooLong,
-    #[error("a case was finished on a thread that has no open case")]
-    NotOpen,
 }
 
 /// Maximum number of planned names in a line: a line of the protocol has a limit.
@@ -51,9 +44,17 @@ struct OpenCase {
     attempt: u64,
     /// In a forked child: the case in which the test forked.
     case: Option<CaseId>,
+    /// The thread has entered this episode, which is no case of the thread alone.
+    episode: Option<u64>,
     path: String,
     skip_reason: Option<String>,
     has_problem: bool,
+}
+
+impl OpenCase {
+    fn new(attempt: u64, case: Option<CaseId>, path: String) -> Self {
+        Self { attempt, case, episode: None, path, skip_reason: None, has_problem: false }
+    }
 }
 
 /// What does not change while a case starts.
@@ -62,6 +63,8 @@ struct AttemptSettings {
     attempt: u64,
     phase: Option<Phase>,
     selectors: Vec<CaseSelector>,
+    /// With slots, the top-level cases are episodes.
+    slots: Option<EpisodeSlots>,
 }
 
 impl AttemptSettings {
@@ -89,6 +92,7 @@ pub(crate) struct Cases {
     main_case: AtomicU32,
     /// Whether a stop request left a case open: the runner finishes all that are open.
     is_abandoned: AtomicBool,
+    episodes: Mutex<HashMap<u64, OpenEpisode>>,
 }
 
 impl Default for Cases {
@@ -100,13 +104,14 @@ impl Default for Cases {
             open: AtomicU32::new(0),
             main_case: AtomicU32::new(0),
             is_abandoned: AtomicBool::new(false),
+            episodes: Mutex::default(),
         }
     }
 }
 
 impl Cases {
     /// Begins an attempt, which the calling thread runs.
-    pub(crate) fn begin_attempt(&self, selectors: &[CaseSelector]) {
+    pub(crate) fn begin_attempt(&self, selectors: &[CaseSelector], slots: Option<EpisodeSlots>) {
         let attempt = ATTEMPTS.fetch_add(1, Ordering::Relaxed);
         RUNS.set(attempt);
         with_open(Vec::clear);
@@ -114,8 +119,10 @@ impl Cases {
         self.open.store(0, Ordering::Relaxed);
         self.main_case.store(0, Ordering::Relaxed);
         self.is_abandoned.store(false, Ordering::Relaxed);
+        self.episodes().clear();
         let mut settings = self.settings.write().unwrap_or_else(PoisonError::into_inner);
-        *settings = AttemptSettings { attempt, phase: None, selectors: selectors.to_vec() };
+        let selectors = selectors.to_vec();
+        *settings = AttemptSettings { attempt, phase: None, selectors, slots };
     }
 
     /// Ends the attempt: its threads report no more cases.
@@ -154,11 +161,13 @@ impl Cases {
         if !settings.selects(&path) {
             return Ok(false);
         }
-        let attempt = settings.attempt;
-        let opened = |case| OpenCase { attempt, case, path, skip_reason: None, has_problem: false };
+        let opened = |case| OpenCase::new(settings.attempt, case, path);
         if self.is_forked_child() {
             self.push(opened(parent.or_else(|| self.main_case())));
             return Ok(true);
+        }
+        if settings.slots.is_some() && parent.is_none() {
+            return Err(CaseError::OutsideEpisode);
         }
         if is_stopping {
             return Ok(false);
@@ -182,7 +191,8 @@ impl Cases {
         is_stopping: bool,
         send: impl Fn(&Notification) -> bool,
     ) -> Result<(), CaseError> {
-        let closed = with_open(Vec::pop).flatten().ok_or(CaseError::NotOpen)?;
+        let is_case = |last: &mut OpenCase| last.episode.is_none();
+        let closed = with_open(|open| open.pop_if(is_case)).flatten().ok_or(CaseError::NotOpen)?;
         let settings = self.settings();
         if closed.attempt != settings.attempt {
             return Ok(());
@@ -206,11 +216,8 @@ impl Cases {
             }
         }
         self.open.fetch_sub(1, Ordering::Relaxed);
-        let outer = with_innermost(closed.attempt, |outer| {
-            outer.has_problem |= closed.has_problem;
-            outer.case
-        });
-        self.set_main_case(closed.attempt, outer.flatten());
+        with_innermost(closed.attempt, |outer| outer.has_problem |= closed.has_problem);
+        self.update_main_case(closed.attempt);
         Ok(())
     }
 

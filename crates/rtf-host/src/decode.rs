@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use rtf_model::Episode;
 use rtf_model::protocol::{INVALID_PARAMS, METHOD_NOT_FOUND, Request, RpcError};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -64,6 +65,11 @@ struct Interrupt {
     request: Option<u64>,
 }
 
+#[derive(Serialize, Deserialize)]
+struct Episodes {
+    episodes: Vec<Episode>,
+}
+
 /// Decodes a line without its end.
 #[must_use]
 pub fn decode(line: &[u8]) -> Incoming {
@@ -89,6 +95,9 @@ pub fn decode(line: &[u8]) -> Incoming {
         "interrupt" => parse::<Interrupt>(params)
             .map(|p| Request::Interrupt { reason: p.reason, request: p.request }),
         "question-closed" => parse(params).map(Request::QuestionClosed),
+        "episodes" => parse::<Episodes>(params)
+            .map(|further| Request::Episodes { episodes: further.episodes }),
+        "end-of-episodes" => Ok(Request::EndOfEpisodes {}),
         "dump-stack" => Ok(Request::DumpStack {}),
         unknown => return refused(id, METHOD_NOT_FOUND, format!("unknown method `{unknown}`")),
     };
@@ -111,6 +120,7 @@ fn refused(id: Option<u64>, code: i32, message: String) -> Incoming {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rtf_model::Parameter;
     use rtf_model::protocol::{Initialize, Plugin, QuestionEnd, RpcMessage};
 
     fn code(line: &str) -> (Option<u64>, i32) {
@@ -136,6 +146,13 @@ mod tests {
                 answer: Some("yes".into()),
                 problem: None,
             }),
+            Request::Episodes {
+                episodes: vec![
+                    Episode::new(17, 3, vec![Parameter { name: "x".into(), value: "1".into() }]),
+                    Episode { alone: true, ..Episode::new(18, 0, Vec::new()) },
+                ],
+            },
+            Request::EndOfEpisodes {},
             Request::DumpStack {},
         ];
         for request in requests {

@@ -27,7 +27,7 @@ mod unix;
 mod writer;
 mod yarp;
 
-pub use cases::CaseEnd;
+pub use cases::{CaseEnd, EpisodeResult};
 pub use check::{CheckedFile, check, files_to_check};
 pub use decode::{Incoming, decode};
 pub use plugin::{HostPlugin, LoadError, PluginKind, Reaction, Step, StepEnd, TestNotification};
@@ -35,6 +35,6 @@ pub use process_marks::{ProcessMarks, fixture_owner};
 pub use program::HostProgram;
 pub use sampling::Sample;
 pub use serve::serve;
-pub use session::{FaultRequest, Inquiry, OpenError, Session};
+pub use session::{FaultRequest, Inquiry, OpenError, Session, TakenEpisode};
 pub use suite_clock::SuiteClock;
 pub use unix::{flush_output, reset_signals};

@@ -62,6 +62,9 @@ impl Reader {
                     }
                 }
                 Some(Request::QuestionClosed(end)) => self.session.end_question(end),
+                Some(Request::Episodes { .. } | Request::EndOfEpisodes {}) => {
+                    self.session.queue_episodes(incoming);
+                }
                 Some(Request::DumpStack {}) => {
                     if let Some(dump) = &self.dumper {
                         dump(&self.session);

@@ -191,12 +191,14 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
         if !self.load(PluginKind::Test, plugin) {
             return;
         }
-        self.session.begin_attempt(&plugin.cases);
+        self.session.begin_attempt(&plugin.cases, plugin.episodes);
         self.session.phase(Phase::Setup);
         self.step(Step::Setup);
         if self.session.has_passed() {
             self.session.phase(Phase::Run);
-            self.step(Step::Run);
+            if self.step(Step::Run) {
+                self.session.require_all_episodes();
+            }
         }
         self.session.phase(Phase::TearDown);
         self.tear_down();
@@ -267,13 +269,16 @@ impl<H: HostPlugin> RequestLoop<'_, H> {
         self.loaded = None;
     }
 
-    fn step(&mut self, step: Step) {
+    /// Calls a function of the plug-in. Returns whether it returned, as it should.
+    fn step(&mut self, step: Step) -> bool {
         let refused = match step {
             Step::Setup | Step::TearDown => Outcome::Error,
             Step::Run | Step::Check => Outcome::Failed,
         };
         let end = self.host.step(step);
+        let is_done = end == StepEnd::Done;
         self.record_end(end, step.name(), refused);
+        is_done
     }
 
     fn record_end(&self, end: StepEnd, step: &str, refused: Outcome) {

@@ -77,6 +77,18 @@ def test_generators_are_interleaved_and_keep_their_cases(tmp_path: Path) -> None
     assert all(len({value for _, value in batch}) == 1 for _, batch in points)
 
 
+def test_samples_of_interleaved_episodes_are_sent_in_batches(tmp_path: Path) -> None:
+    body = episode_test(
+        "def episode(self, episode):\n"
+        "    for count in range(100):\n"
+        "        self.sample('height', episode.id, time=count)\n        yield\n"
+    )
+    runner = run_episodes(tmp_path, body, [1, 2, 3], slots=3)
+    batches = runner.host.of("sampled")
+    assert sum(len(batch["points"]) for batch in batches) == 300
+    assert len(batches) < 150
+
+
 @pytest.mark.parametrize(
     ("end", "verdict", "reason"),
     [
@@ -385,6 +397,24 @@ def test_after_a_stop_request_open_episodes_are_the_runners(tmp_path: Path) -> N
     assert runner.events == [("start", 1), ("start", 2)]
     for episode in (1, 2):
         assert runner.results[episode].messages == [("report", "runs"), ("report", "closed")]
+
+
+def test_a_result_after_a_stop_request_is_not_sent(tmp_path: Path) -> None:
+    body = episode_test(
+        "def run(self):\n"
+        "    one, = self.take()\n"
+        "    self.report('runs')\n"
+        "    while not self.interrupted():\n        pass\n"
+        "    one.finish(True)\n"
+    )
+    runner = EpisodeRunner(tmp_path, body)
+    runner.give(1)
+    while not runner.outside:
+        assert runner.read()
+    runner.host.send("interrupt", {"reason": "enough"})
+    runner.finish()
+    assert runner.answer == {"outcome": "interrupted", "reason": "enough"}
+    assert runner.events == [("start", 1)]
 
 
 def test_a_run_that_ends_with_open_episodes_is_an_error(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -543,6 +544,64 @@ def test_neither_environment_nor_policy(tmp_path: Path) -> None:
     runner = run_episodes(tmp_path, LINE + wrong, seeded(1))
     text = "`make_env` returned NoneType, expected a `gymnasium.Env`"
     assert runner.outside == [("error", text)]
+
+
+def test_a_result_is_sent_before_the_policy_continues(tmp_path: Path) -> None:
+    """The policy waits until the result of the first episode has been received."""
+    body = (
+        f"{LINE}{TEST}"
+        "    def act(self, observations):\n"
+        "        if observations[1, 0] == 14:\n            open('fifo').read()\n"
+        "        return np.ones((self.slots, 1))\n"
+    )
+    fifo = tmp_path / "fifo"
+    os.mkfifo(fifo)
+    runner = EpisodeRunner(tmp_path, body, slots=2)
+    runner.give({"id": 1, "seed": 11, "parameters": {}}, {"id": 2, "seed": 5, "parameters": {}})
+    runner.end()
+    while ("end", 1) not in runner.events:
+        assert runner.read()
+    fifo.write_text("")
+    assert runner.finish().verdicts() == ["passed"] * 2
+
+
+def test_a_slow_judge_does_not_hold_other_results(tmp_path: Path) -> None:
+    body = (
+        (
+            f"{LINE}{TEST}"
+            "    def judge(self, end):\n"
+            "        if end.episode.id == 2:\n            rtf.gymnasium.time.sleep(0.1)\n"
+            "        if end.episode.id == 3:\n            open('fifo').read()\n"
+            "        return True\n"
+        )
+        .replace("import os, signal", "import os, signal, time")
+        .replace("rtf.gymnasium.time", "time")
+    )
+    fifo = tmp_path / "fifo"
+    os.mkfifo(fifo)
+    runner = EpisodeRunner(tmp_path, body, slots=3)
+    runner.give(*({"id": n, "seed": 11, "parameters": {}} for n in (1, 2, 3)))
+    runner.end()
+    while ("end", 2) not in runner.events:
+        assert runner.read()
+    fifo.write_text("")
+    assert runner.finish().verdicts() == ["passed"] * 3
+
+
+def test_a_judge_that_forks_sends_no_result_twice(tmp_path: Path) -> None:
+    body = (
+        f"{LINE}{TEST}"
+        "    def judge(self, end):\n"
+        "        if end.episode.id == 2:\n"
+        "            if os.fork() == 0:\n"
+        "                self.report('child')\n                os._exit(0)\n"
+        "            os.wait()\n"
+        "        return True\n"
+    )
+    episodes: list[Any] = [{"id": n, "seed": 11, "parameters": {}} for n in (1, 2)]
+    runner = run_episodes(tmp_path, body, episodes, slots=2)
+    assert runner.verdicts() == ["passed"] * 2
+    assert runner.results[2].messages == [("report", "child")]
 
 
 def test_memory_does_not_grow(tmp_path: Path) -> None:

@@ -125,7 +125,13 @@ impl Host {
     }
 
     pub fn send(&mut self, message: Value) {
-        writeln!(self.channel, "{message}").unwrap();
+        self.send_all(&[message]);
+    }
+
+    /// Sends messages in one write: the host may end after the first one.
+    pub fn send_all(&mut self, messages: &[Value]) {
+        let lines: String = messages.iter().map(|message| format!("{message}\n")).collect();
+        self.channel.write_all(lines.as_bytes()).unwrap();
     }
 
     /// The next message, `None` at the end of the channel.

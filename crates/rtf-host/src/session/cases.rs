@@ -1,6 +1,6 @@
 //! Cases and skips of the plug-in.
 
-use rtf_model::protocol::{CaseSelector, Notification};
+use rtf_model::protocol::{CaseSelector, EpisodeSlots, Notification};
 use rtf_model::{CaseId, CaseStart, Location, Parameter};
 
 use super::Session;
@@ -41,17 +41,18 @@ impl Session {
     }
 
     /// Reports a call that is not allowed here as an error of the plug-in.
-    fn allowed<T>(&self, result: Result<T, CaseError>) -> Option<T> {
+    pub(super) fn allowed<T>(&self, result: Result<T, CaseError>) -> Option<T> {
         result.map_err(|error| self.error(error.to_string(), None)).ok()
     }
 
-    /// Begins an attempt of a test with these selected cases, on the calling thread.
-    pub(crate) fn begin_attempt(&self, cases: &[CaseSelector]) {
-        self.0.cases.begin_attempt(cases);
+    /// Begins an attempt of a test with these selected cases or slots, on the calling thread.
+    pub(crate) fn begin_attempt(&self, cases: &[CaseSelector], slots: Option<EpisodeSlots>) {
+        self.0.cases.begin_attempt(cases, slots);
+        self.begin_episodes(slots);
     }
 
     /// Sends a notification about cases; false if it is too long.
-    fn notify_case(&self, notification: &Notification) -> bool {
+    pub(super) fn notify_case(&self, notification: &Notification) -> bool {
         self.flush();
         self.0.writer.send(None, notification)
     }

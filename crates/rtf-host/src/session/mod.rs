@@ -2,6 +2,7 @@
 
 mod attachments;
 mod cases;
+mod episodes;
 mod faults;
 mod findings;
 mod program;
@@ -25,6 +26,8 @@ use crate::outcome::RequestOutcome;
 use crate::sampling::{Sample, Sampling};
 use crate::unix;
 use crate::writer::Writer;
+use episodes::EpisodeQueue;
+pub use episodes::TakenEpisode;
 pub use faults::FaultRequest;
 pub use questions::Inquiry;
 
@@ -82,6 +85,7 @@ struct SessionState {
     /// Questions that a thread of the plug-in waits for, with their ends.
     questions: BTreeMap<u32, Option<QuestionEnd>>,
     last_question: u32,
+    episodes: EpisodeQueue,
 }
 
 impl Session {

@@ -25,7 +25,7 @@ impl HostPlugin for ScriptHost {
             stack: StackSupport::None,
             supports_shared: false,
             selects_cases: true,
-            runs_episodes: false,
+            runs_episodes: true,
         }
     }
 
@@ -71,6 +71,36 @@ impl Runner {
     pub fn ask(&mut self, method: &str, cases: &Value) -> (Vec<String>, Value) {
         let params = json!({"file": "f", "name": "T", "cases": cases});
         self.send(&json!({"id": 1, "method": method, "params": params}));
+        self.finish()
+    }
+
+    /// Starts a test with slots, and returns when its `run` has begun.
+    pub fn start_episodes(script: Script, slots: u32) -> Self {
+        Self::start_with_limits(script, &json!({"slots": slots}))
+    }
+
+    /// Does the same with these settings of `episodes`.
+    pub fn start_with_limits(script: Script, settings: &Value) -> Self {
+        let mut runner = Self::start(script);
+        let params = json!({"file": "f", "name": "T", "episodes": settings});
+        runner.send(&json!({"id": 1, "method": "run-test", "params": params}));
+        while runner.line()["params"]["phase"] != "run" {}
+        runner
+    }
+
+    /// Sends episodes with these ids.
+    pub fn send_episodes(&mut self, ids: impl IntoIterator<Item = u64>) {
+        let episode = |id| json!({"id": id, "seed": id + 100, "parameters": {"payload": "1.2"}});
+        let episodes: Vec<Value> = ids.into_iter().map(episode).collect();
+        self.send(&json!({"method": "episodes", "params": {"episodes": episodes}}));
+    }
+
+    pub fn end_episodes(&mut self) {
+        self.send(&json!({"method": "end-of-episodes", "params": {}}));
+    }
+
+    /// Returns the notifications until the answer, without phases, and the result.
+    pub fn finish(&mut self) -> (Vec<String>, Value) {
         let mut lines = Vec::new();
         loop {
             let line = self.line();
@@ -92,10 +122,14 @@ fn describe(line: &Value) -> String {
     match line["method"].as_str().unwrap() {
         "case-started" => {
             let parent = params["parent"].as_u64().map_or("-".to_owned(), |id| id.to_string());
-            format!("start {case} in {parent}: {}", text("name"))
+            let episode = params["episode"]["id"].as_u64();
+            let episode = episode.map_or(String::new(), |id| format!(", episode {id}"));
+            format!("start {case} in {parent}: {}{episode}", text("name"))
         }
         "case-finished" => {
-            format!("end {case} {} {}", text("outcome"), text("reason")).trim_end().to_owned()
+            let end = params.get("episode").map_or(String::new(), |end| format!(" {end}"));
+            let words = format!("end {case} {} {}", text("outcome"), text("reason"));
+            format!("{}{end}", words.trim_end())
         }
         "cases-planned" => format!("plan {}", params["names"]),
         "message" => format!("{} in {case}: {}", text("kind"), text("text")),

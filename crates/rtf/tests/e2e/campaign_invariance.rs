@@ -91,7 +91,7 @@ fn found(defect: &str, cause: Option<&str>) -> (u64, u64) {
     let has_cause = |seed: &u64| {
         let found = invariance(defect, *seed);
         let causes: Vec<_> = found["causes"].as_array().into_iter().flatten().collect();
-        causes == cause.map(|cause| Value::from(cause)).iter().collect::<Vec<_>>()
+        causes == cause.map(Value::from).iter().collect::<Vec<_>>()
     };
     ((0..campaigns).filter(has_cause).count() as u64, campaigns)
 }

@@ -16,7 +16,7 @@
 #define RTF_ABI_MAJOR 1
 
 // Counts the fields that were appended since the major version began.
-#define RTF_ABI_MINOR 4
+#define RTF_ABI_MINOR 5
 
 // The plug-in is a test: `setup`, `run`, `tear_down`.
 #define RTF_KIND_TEST 1
@@ -63,6 +63,18 @@
 
 // The fault ends. No effect if it has ended already.
 #define RTF_FAULT_REMOVE 1
+
+// The episode passed, unless a problem was reported in it.
+#define RTF_EPISODE_PASSED 0
+
+// The episode failed: the robot is wrong.
+#define RTF_EPISODE_FAILED 1
+
+// The episode has no result: the bench is wrong.
+#define RTF_EPISODE_ERROR 2
+
+// The episode reached a limit in steps or in simulated time.
+#define RTF_EPISODE_TIMED_OUT 3
 
 // A UTF-8 text, not necessarily terminated by zero. Invalid bytes become `U+FFFD`.
 typedef struct rtf_text {
@@ -263,6 +275,60 @@ typedef struct rtf_picture {
     uint32_t line;
 } rtf_picture;
 
+// How a test runs the episodes of a campaign.
+typedef struct rtf_slots {
+    // `sizeof(rtf_slots)`. The host does not write fields beyond it.
+    size_t size;
+    // The number of episodes that may be open at the same time, from 1.
+    uint32_t slots;
+    // Set to 0 by the host; reserved.
+    uint32_t reserved;
+    // The limit of an episode in steps, 0 if there is none.
+    uint64_t max_steps;
+    // The limit of an episode in simulated time, in seconds; 0 if there is none.
+    double max_time;
+} rtf_slots;
+
+// An episode of a campaign that has started.
+typedef struct rtf_episode {
+    // `sizeof(rtf_episode)`. The host does not write fields beyond it.
+    size_t size;
+    // The number, from 1.
+    uint64_t id;
+    // The seed for its random numbers: from 0 to 2³¹ − 1.
+    uint32_t seed;
+    // Set to 0 by the host; reserved.
+    uint32_t reserved;
+    // Its parameters.
+    const struct rtf_parameter *parameters;
+    // The number of entries of `parameters`.
+    size_t parameter_count;
+} rtf_episode;
+
+// The result of an episode.
+typedef struct rtf_episode_end {
+    // `sizeof(rtf_episode_end)`.
+    size_t size;
+    // `RTF_EPISODE_PASSED`, `RTF_EPISODE_FAILED`, `RTF_EPISODE_ERROR` or
+    // `RTF_EPISODE_TIMED_OUT`.
+    int32_t outcome;
+    // Always 0; reserved.
+    uint32_t reserved;
+    // Why it did not pass; empty if the messages in the episode contain it.
+    struct rtf_text reason;
+    // How many steps it took; negative if unknown.
+    int64_t steps;
+    // Its duration in simulated time, in seconds; negative or not a number if unknown.
+    double time;
+    // At most 64 characters that are the same if the first observation is the same, such as a
+    // hash; empty if unknown.
+    struct rtf_text first_observation;
+    // The source file for an error of the call, null if unknown.
+    const char *file;
+    // The line in it, 0 if unknown.
+    uint32_t line;
+} rtf_episode_end;
+
 // The host's functions for a plug-in. Their first argument is `context`. They
 // may be called from any thread until the process ends.
 typedef struct rtf_host {
@@ -341,6 +407,25 @@ typedef struct rtf_host {
     // Since 1.4: attaches a picture, which the runner compares with a stored one: a difference is a
     // failure, and the test continues. Only for tests.
     void (*check_picture)(void *context, const struct rtf_picture *check);
+    // Since 1.5: how the test runs episodes. Returns `RTF_DONE`, or `RTF_REFUSED` if it has no
+    // `slots` in its suite. Set `size` before.
+    int32_t (*slots)(void *context, struct rtf_slots *slots);
+    // Since 1.5: starts the next episode, in `run`. Returns `RTF_DONE` with the episode, whose
+    // parameters are valid until this thread calls the function again, or ends. Returns
+    // `RTF_REFUSED` if there is none: if `wait` is not 0, no episode follows; otherwise, none has
+    // arrived, or no slot is free. Returns `RTF_STOPPED` after a stop request, and after an error
+    // that the host has reported: then return from `run` with `RTF_STOPPED`. Wait only if no
+    // episode is open that this thread has to finish. Set `size` before.
+    int32_t (*take_episode)(void *context, int wait, struct rtf_episode *episode);
+    // Since 1.5: from now on, what this thread reports belongs to the episode, as in a case.
+    // Returns `RTF_DONE`, or `RTF_STOPPED` after an error that the host has reported.
+    int32_t (*enter_episode)(void *context, uint64_t id);
+    // Since 1.5: this thread leaves the episode, which it has entered last. Returns `RTF_DONE`,
+    // or `RTF_STOPPED` after an error that the host has reported.
+    int32_t (*leave_episode)(void *context, uint64_t id);
+    // Since 1.5: finishes an episode, once, in `run`, on any thread, entered or not. Returns
+    // `RTF_DONE`, or `RTF_STOPPED` after an error that the host has reported.
+    int32_t (*finish_episode)(void *context, uint64_t id, const struct rtf_episode_end *end);
 } rtf_host;
 
 // An attempt of a test.

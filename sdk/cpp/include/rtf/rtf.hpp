@@ -3,6 +3,7 @@
 #ifndef RTF_RTF_HPP
 #define RTF_RTF_HPP
 
+#include <rtf/EpisodeTest.hpp>
 #include <rtf/FixtureManager.hpp>
 #include <rtf/TestCase.hpp>
 

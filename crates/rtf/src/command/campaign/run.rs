@@ -195,7 +195,7 @@ pub fn describe(
     planned.print_warnings()?;
     let working_dir = request.options.runner.current_dir;
     let mut options = profile.to_options();
-    options.extend(slots.map(|slots| format!("--slots={slots}").into()));
+    options.extend(slots.map(|slots| format!("--slots={slots}")));
     let description = Description {
         name: loaded.name.clone(),
         file: working_dir.join(file),
