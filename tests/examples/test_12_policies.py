@@ -1,11 +1,12 @@
 """Runs example 12 as a user does: two policies, a comparison that finds which is worse and where,
 a failed episode again with its samples, and that results do not depend on how episodes run. The
-guide's page about policies has the same requirements.
+commands of the guide's page about policies, which has the same requirements, run, too.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import Any
 
 import pytest
 from checkout import ROOT
+from pages import commands, write_files
 from run import Run, expect, expect_in
 
 pytestmark = pytest.mark.venv("episodes")
@@ -157,3 +159,21 @@ def test_an_exception_ends_only_its_own_episodes(rtf: str, example: Path) -> Non
     errors = {id_ for id_, outcome in outcomes.items() if outcome == "error"}
     expect("the errors", errors, heavy)
     expect("the others", {outcomes[id_] for id_ in outcomes if id_ not in heavy}, {"passed"})
+
+
+def test_page_about_policies(rtf: str, tmp_path: Path) -> None:
+    """In the order of the page, with the outputs that it shows."""
+    page = ROOT / "docs/how-to/evaluate-a-policy.md"
+    write_files(page, tmp_path)
+    for block in commands(page):
+        ran = subprocess.run(
+            ["bash", "-e", "-o", "pipefail", "-c", block.text],
+            cwd=tmp_path,
+            env=os.environ | {"PATH": f"{Path(rtf).parent}:{os.environ['PATH']}"},
+            stdout=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+        print(block.text, ran.stdout, sep="\n", flush=True)
+        expect("exit code", ran.returncode, block.exit_code)
+        expect("the output is that of the page", block.matches(ran.stdout), True)
