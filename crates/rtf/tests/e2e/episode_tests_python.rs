@@ -75,7 +75,8 @@ fn results_are_those_of_one_episode_after_the_other() {
             let time = value("simulated time").expect("a time");
             assert!((time - f64::from(steps) / 10.0).abs() < 1e-6, "{line:?}");
         }
-        let lines = lines.into_iter().map(|line| EpisodeLine { problem: None, shown: None, ..line });
+        let lines =
+            lines.into_iter().map(|line| EpisodeLine { problem: None, shown: None, ..line });
         all.push(lines.collect::<Vec<_>>());
         assert!(nothing_left(&folder));
     }
