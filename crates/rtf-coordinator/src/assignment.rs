@@ -5,6 +5,7 @@ use std::fs::File;
 use std::io::{self, Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 
+use rtf_model::EpisodeOutcome;
 use rtf_report::episode_results::{EPISODE_RESULTS, EpisodeLine};
 use rtf_run::campaign::directory::{self, CampaignDir};
 
@@ -19,6 +20,8 @@ pub struct Assignment {
     pub running: BTreeSet<u64>,
     /// Whether an episode has finished.
     pub has_results: bool,
+    /// Whether one of them did not pass.
+    pub any_problem: bool,
     results: ResultFollower,
 }
 
@@ -30,6 +33,7 @@ impl Assignment {
             left: episodes.into_iter().collect(),
             running: BTreeSet::new(),
             has_results: false,
+            any_problem: false,
             results: ResultFollower::of_worker(dir, worker),
         }
     }
@@ -45,6 +49,7 @@ impl Assignment {
             self.running.remove(&line.episode);
             if self.left.remove(&line.episode) {
                 self.has_results = true;
+                self.any_problem |= line.outcome != Some(EpisodeOutcome::Passed);
                 results.push(line);
             }
         }

@@ -182,6 +182,7 @@ impl<'a, P: Pool> Coordinator<'a, P> {
             self.stop(TERM).await;
         }
         let ending = worker::ending(assignment.worker, code);
+        let is_explained = assignment.any_problem || !assignment.running.is_empty() || is_stopped;
         match assignment.running.first() {
             _ if is_stopped => {}
             Some(episode) if assignment.running.len() == 1 => {
@@ -197,6 +198,11 @@ impl<'a, P: Pool> Coordinator<'a, P> {
             false => self.failed_starts + 1,
         };
         if code == Some(exit::BAD_INPUT) || self.failed_starts >= MAX_FAILED_STARTS {
+            return Err(worker::failure(&ending, &outputs));
+        }
+        // For example, the tear-down of a test that runs many episodes failed.
+        if code == Some(exit::FAILED) && !is_explained {
+            let ending = format!("{ending} although all of its episodes passed");
             return Err(worker::failure(&ending, &outputs));
         }
         Ok(())

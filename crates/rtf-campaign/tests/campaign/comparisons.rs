@@ -22,6 +22,7 @@ fn version(passed: impl IntoIterator<Item = bool>) -> Vec<ComparedEpisode> {
             value: ["wood", "ice"][id as usize % 2].to_owned(),
         }],
         passed: Some(passed),
+        first_observation: None,
         values: [(key(), id as f64)].into(),
     };
     passed.into_iter().zip(1..).map(episode).collect()

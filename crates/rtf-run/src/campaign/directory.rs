@@ -311,6 +311,7 @@ pub(crate) mod tests {
             suite: "grasp.xml".into(),
             working_dir: "/".into(),
             repeats: 2,
+            variables: Vec::new(),
             options: Vec::new(),
             is_search: false,
             jobs: None,

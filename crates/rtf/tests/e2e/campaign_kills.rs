@@ -1,7 +1,7 @@
 //! Processes of a campaign are killed at random: each listed episode has exactly one final result,
 //! that of the undisturbed run.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
 use rtf_report::episode_results::EpisodeLine;
@@ -42,13 +42,17 @@ fn comparable(folder: &Folder) -> Vec<(EpisodeLine, String)> {
     results(folder).into_iter().map(line).collect()
 }
 
+pub fn directory(folder: &Folder) -> PathBuf {
+    folder.path().join("rtf-results/campaigns/latest")
+}
+
 /// How many results there are, in all workers.
-fn progress(folder: &Folder) -> usize {
-    let workers = folder.path().join("rtf-results/campaigns/latest/workers");
+pub fn progress(folder: &Folder) -> usize {
+    let workers = directory(folder).join("workers");
     let runs = workers.read_dir().into_iter().flatten().flatten();
     let runs = runs.flat_map(|worker| worker.path().read_dir().into_iter().flatten().flatten());
     let files = runs.filter(|run| run.file_name() != "latest").map(|run| run.path());
-    let count = |run: std::path::PathBuf| {
+    let count = |run: PathBuf| {
         let text = std::fs::read_to_string(run.join("episodes.jsonl")).unwrap_or_default();
         text.matches("\"outcome\"").count()
     };
@@ -56,7 +60,7 @@ fn progress(folder: &Folder) -> usize {
 }
 
 /// The processes of rtf below one, the nearest first: its runner, and guards and runners of workers.
-fn below(pid: u32) -> Vec<u32> {
+pub fn below(pid: u32) -> Vec<u32> {
     let mut found = vec![pid];
     let mut next = 0;
     while let Some(parent) = found.get(next).copied() {
@@ -94,9 +98,7 @@ fn killed_processes_change_no_result() {
     let folder = campaign();
     let mut random = Random::from_environment();
     let mut running = start(&folder, &args);
-    wait_until("the campaign", || {
-        folder.path().join("rtf-results/campaigns/latest/campaign.json").exists().then_some(())
-    });
+    wait_until("the campaign", || directory(&folder).join("campaign.json").exists().then_some(()));
     for _ in 0..number("RTF_KILLS").unwrap_or(15) {
         let wanted = progress(&folder) + random.below(40) as usize;
         let mut has_ended = false;

@@ -37,6 +37,7 @@ mod damaged_journals;
 mod doctor;
 mod documented;
 mod ended_campaigns;
+mod episode_tests_bad;
 mod episode_tests_cpp;
 mod episode_tests_python;
 mod faults;
