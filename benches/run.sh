@@ -26,6 +26,11 @@ if peers=$(tools/venv.sh bench); then
 else
   say "warning: pytest is missing; its lines will not be measured"
 fi
+if episodes=$(tools/venv.sh episodes); then
+  export RTF_BENCH_EPISODES=$episodes
+else
+  say "warning: Gymnasium and MuJoCo are missing; their lines will not be measured"
+fi
 
 # Without them, Python keeps compiled modules, as it does for most users. pip has compiled
 # those of the peers in any case.

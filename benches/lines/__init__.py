@@ -14,6 +14,7 @@ from lines import (
     campaigns,
     clients,
     collapse,
+    episodes,
     frameworks,
     history,
     large,
@@ -41,6 +42,7 @@ MODULES = (
     watched,
     clients,
     campaigns,
+    episodes,
     slurm,
     building,
 )
