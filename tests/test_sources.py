@@ -48,7 +48,7 @@ def files(*patterns: str, without: tuple[str, ...] = ()) -> list[str]:
 def typed() -> list[str]:
     """The directories whose types are checked, apart: their modules may have the same names."""
     # The campaign's scripts and the wheel's builder import what is only in their environments.
-    untyped = ("examples/10-campaign", "packaging/wheel")
+    untyped = ("examples/10-campaign", "examples/12-policies", "packaging/wheel")
     modules = files("examples/*.py", "fixtures/*.py", "packaging/*.py", without=untyped)
     modules += files("crates/rtf/templates/new/python/*.py", "tools/*.py", "benches/bench.py")
     modules += files("tests/*.py", without=UNTYPED)
