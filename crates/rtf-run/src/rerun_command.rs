@@ -21,6 +21,10 @@ pub fn for_tests() -> TestCommands {
 pub fn for_run() -> RerunCommand {
     let options = OnceLock::new();
     Box::new(move |record, test, case| {
+        if case.is_some() && runs_episodes(record, test) {
+            // Another run would give the episode another id and seed.
+            return None;
+        }
         let mut command = rerun_suite(record, test, case)?;
         // The same for all tests of a run.
         let (plugin_options, config_options) =
@@ -48,6 +52,13 @@ pub fn for_replay() -> ReplayCommand {
         let options = config_options(record) + &join([("--set", &recording)].into_iter());
         Some(format!("rtf run {}{options}", shell_words::quote(&what)))
     })
+}
+
+/// Whether the cases of a test are episodes.
+fn runs_episodes(record: &Record, test: TestId) -> bool {
+    let attempts = record.tests.get(test.index()).map(|test| &test.attempts);
+    let mut cases = attempts.into_iter().flatten().flat_map(|attempt| attempt.cases.kept());
+    cases.next().is_some_and(|case| case.start.episode.is_some())
 }
 
 fn is_direct_plugin(record: &Record, test: TestId) -> bool {

@@ -70,6 +70,18 @@ impl ProfileArgs {
         let set = self.set.iter().map(|(name, value)| format!("--set={name}={value}"));
         profile.chain(set).collect()
     }
+
+    /// Adds the arguments of another process, which those of this one precede.
+    pub fn add_options(&mut self, options: &[String]) {
+        for option in options {
+            if let Some(profile) = option.strip_prefix("--profile=") {
+                self.profile.get_or_insert_with(|| profile.to_owned());
+            }
+            let setting = option.strip_prefix("--set=").and_then(|it| parse_setting(it).ok());
+            let is_new = |it: &(String, String)| self.set.iter().all(|(name, _)| *name != it.0);
+            self.set.extend(setting.filter(is_new));
+        }
+    }
 }
 
 /// Where runs are stored.

@@ -7,6 +7,7 @@ use std::path::Path;
 use rtf_engine::guard::Lifeline;
 use rtf_engine::locks::LockOptions;
 use rtf_plan::plan::CaseListing;
+use rtf_run::campaign::directory::CampaignDir;
 use rtf_run::campaign::{self, EpisodeStream};
 use rtf_run::debug::DebugRequest;
 use rtf_run::error::Failure;
@@ -66,7 +67,14 @@ fn lifeline(args: &RunArgs) -> io::Result<Option<Lifeline>> {
 impl RunSource {
     /// Reads past runs and standard input, and asks Git for the revision.
     pub fn resolve(self) -> Result<RunRequest, Failure> {
-        let Self { args, debug } = self;
+        let Self { mut args, debug } = self;
+        if let (Some(_), [dir]) = (args.episode, args.input.inputs.as_slice())
+            && dir.is_dir()
+        {
+            // The episode runs again as in its campaign.
+            let description = CampaignDir::open(dir)?.description;
+            args.input.profile.add_options(&description.options);
+        }
         if let Some(option) = args.web.option_without_effect() {
             let error = format!("`{option}` has no effect without `--web`");
             return Err(Failure::input(error).hint("add `--web`"));

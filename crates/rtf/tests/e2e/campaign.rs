@@ -198,6 +198,21 @@ fn an_episode_is_repeated_from_the_file_or_the_results() {
 }
 
 #[test]
+fn an_episode_runs_again_with_the_settings_of_its_campaign() {
+    let folder = folder(SUITE, &fixed(2, "0.5"));
+    let test = "TestCase = {}\nfunction TestCase.run()\n  \
+        rtf.check(os.getenv('RTF_PARAM_MODE') == 'good', 'bad mode')\nend\n";
+    folder.file("Grasp.lua", test);
+    assert_eq!(run(&folder, &["--set", "mode=bad"]).code, Some(1));
+    let again = ["run", "--episode", "1", "rtf-results/campaigns/latest"];
+    let finished = folder.rtf(&again);
+    assert_eq!(finished.code, Some(1), "{}{}", finished.stdout, finished.stderr);
+    assert!(finished.stdout.contains("bad mode"), "{}", finished.stdout);
+    let other = folder.rtf(&[&again[..], &["--set", "mode=good"]].concat());
+    assert_eq!(other.code, Some(0), "{}{}", other.stdout, other.stderr);
+}
+
+#[test]
 fn mistakes_are_reported_before_anything_starts() {
     let unknown = folder("<suite><test>Gone.lua</test></suite>", &fixed(5, "0.5"));
     for args in [["check", "campaign.xml"].as_slice(), &["campaign", "run", "campaign.xml"]] {
