@@ -40,7 +40,7 @@ pub use access::{TokenError, WrongToken};
 pub use api::description;
 pub use campaign_report::{
     CampaignCell, CampaignMap, CampaignMapRow, CampaignParameter, CampaignProgress, CampaignReport,
-    CampaignSource, EpisodeProblem, EpisodeRanking, EpisodeRun, RankedEpisode,
+    CampaignSource, EpisodeAttempt, EpisodeProblem, EpisodeRanking, EpisodeRun, RankedEpisode,
 };
 pub use capabilities::{
     AnswerRequest, Capabilities, FinishedRun, RerunRejected, RunControl, RunStarter,
