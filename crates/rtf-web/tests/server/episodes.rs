@@ -4,6 +4,7 @@ use rtf_model::{
     Attachment, CaseEpisode, CaseFinished, CaseId, CaseStart, CaseStarted, EpisodeEnd, EventKind,
     Measurement, Message, MessageKind, Parameter, Samples, Source, Verdict,
 };
+use rtf_web::{EpisodeAttempt, EpisodeRun};
 use serde_json::{Value, json};
 
 use crate::world::{TEST, World, Writer};
@@ -220,4 +221,17 @@ fn a_case_in_one_that_was_run_again_is_superseded() {
     run.flush();
     let inner = world.get(&format!("{ATTEMPT}/cases?case=2")).json();
     assert_eq!(inner["cases"][0]["superseded"], true);
+}
+
+/// The fields of the attempt are those of the run itself.
+#[test]
+fn the_run_of_an_episode_names_its_case() {
+    let run = |attempt| EpisodeRun { run: "2026".to_owned(), test: Some(0), attempt };
+    let json_of = |attempt| serde_json::to_value(run(attempt)).unwrap();
+    let batched = EpisodeAttempt { attempt: 1, case: Some(17) };
+    let whole = EpisodeAttempt { case: None, ..batched };
+    let wanted = json!({"run": "2026", "test": 0, "attempt": 1, "case": 17});
+    assert_eq!(json_of(Some(batched)), wanted);
+    assert_eq!(json_of(Some(whole)), json!({"run": "2026", "test": 0, "attempt": 1}));
+    assert_eq!(json_of(None), json!({"run": "2026", "test": 0}));
 }
