@@ -19,6 +19,18 @@ function TestCase.run()
   rtf.check(payload < 1.5, 'too heavy for ${SCRIPT}')
 end
 `;
+const BATCH = `import rtf
+
+
+class Batch(rtf.EpisodeTest):
+    def episode(self, episode):
+        payload = float(episode.parameter("payload"))
+        for _ in range(2):
+            self.report(f"carries {episode.parameter('payload')}")
+            yield 0.5
+        self.measure("sag", payload / 2, "rad")
+        return "too heavy" if payload >= 1.5 else None
+`;
 const CAMPAIGN = `<campaign name="${escaped(SCRIPT)}" suite="grasp.xml" episodes="60" seed="4">
   <parameter name="payload" distribution="uniform" low="0" high="2"/>
   <parameter name="friction" distribution="uniform" low="0" high="1"/>
@@ -205,6 +217,38 @@ test('the worst episodes are next to the best ones, and open their runs', () =>
         await guarded.see(`payload ${best[0]}`, '#detail');
         await guarded.see('sag', '#detail');
     }));
+
+test('an episode of a batch opens its case, with only what was reported in it', async () => {
+    await bench.write('batch.xml', '<suite name="batch"><test slots="4">Batch.py</test></suite>');
+    await bench.write('Batch.py', BATCH);
+    const batch = CAMPAIGN.replace('grasp.xml', 'batch.xml').replace(escaped(SCRIPT), 'batch');
+    await bench.write('batch-campaign.xml', batch);
+    const program = bench.spawn(['campaign', 'run', 'batch-campaign.xml', '--no-history']);
+    assert.equal(await program.ended, 1, program.printed);
+    const guarded = await Guarded.open(browser, `${serve.origin}/#/campaigns/latest`);
+    const { page } = guarded;
+    const list = page.getByRole('region', { name: 'Episodes that did not pass' });
+    const cells = await list.locator('tbody tr').first().locator('td').allInnerTexts();
+    const episode = cells[0].trim();
+    const payload = /payload=([0-9.]+)/.exec(cells[3])[1];
+    await list.locator('tbody tr').first().getByRole('link').click();
+    await guarded.see(`episode ${episode}`, '#detail section h2');
+    assert.match(page.url(), /\/tests\/0\?attempt=1&case=\d+$/);
+    const facts = page.getByRole('region', { name: 'Case', exact: true });
+    for (const text of ['failed', 'too heavy', `payload=${payload}`, '2 steps', 'simulated time'])
+        await facts.getByText(text).first().waitFor();
+    const reports = page.locator('#detail li', { hasText: 'carries' });
+    await reports.first().waitFor();
+    // Four episodes are open at a time, and each reports before and after a step.
+    assert.equal(await reports.count(), 2);
+    for (const text of await reports.allInnerTexts()) assert.ok(text.includes(payload), text);
+    await guarded.see('sag', '#detail');
+    assert.deepEqual(await violations(guarded), []);
+    await page.getByRole('link', { name: 'Whole attempt' }).click();
+    await guarded.see('Cases', '#detail h2');
+    assert.ok((await reports.count()) > 2);
+    await guarded.close();
+});
 
 test('axe finds nothing serious, in both themes', async () => {
     for (const colorScheme of ['light', 'dark'])

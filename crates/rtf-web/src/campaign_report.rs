@@ -221,7 +221,20 @@ pub struct EpisodeRun {
     /// the first one. Missing if no test is the reason, and in results of earlier versions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub test: Option<u32>,
-    /// Its attempt in the run, from 1.
+    /// Its attempt in the run.
+    #[serde(flatten)]
+    #[schema(value_type = EpisodeAttempt)]
+    pub attempt: Option<EpisodeAttempt>,
+}
+
+/// The attempt of a test in which an episode ran.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
+pub struct EpisodeAttempt {
+    /// The attempt, from 1.
+    // An episode without an attempt has no field of this.
+    #[schema(required = false)]
+    pub attempt: u32,
+    /// The case of this attempt that the episode is, of a test that runs many.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub attempt: Option<u32>,
+    pub case: Option<u32>,
 }

@@ -40,8 +40,8 @@ pub use access::{TokenError, WrongToken};
 pub use api::description;
 pub use campaign_report::{
     CampaignCell, CampaignMap, CampaignMapRow, CampaignParameter, CampaignProgress, CampaignReport,
-    CampaignSource, CampaignVersionRate, CampaignVersions, EpisodeProblem, EpisodeRanking,
-    EpisodeRun, RankedEpisode,
+    CampaignSource, CampaignVersionRate, CampaignVersions, EpisodeAttempt, EpisodeProblem,
+    EpisodeRanking, EpisodeRun, RankedEpisode,
 };
 pub use capabilities::{
     AnswerRequest, Capabilities, FinishedRun, RerunRejected, RunControl, RunStarter,

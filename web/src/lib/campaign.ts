@@ -1,16 +1,19 @@
 // The results of one campaign as plots.
 
 import type { CampaignMap, CampaignReport, EpisodeRanking, EpisodeRun } from '../generated/api';
-import { runHref, testHref } from './route';
+import { caseHref, runHref, testHref } from './route';
 
 /** The height of the plot of the progress. */
 export const HEIGHT = 200;
 const LEFT = 48;
 const TOP = 8;
 
-/** The page of an episode: the test that did not pass or shows it, in the run of its worker. */
-export function episodeHref({ run, test, attempt }: EpisodeRun): string {
-    return test === undefined ? runHref(run) : testHref(run, test, attempt ?? null);
+/** The page of an episode: the test that did not pass or shows it, in the run of its worker, and
+ *  the case of it that the episode is. */
+export function episodeHref({ run, test, attempt, case: number }: EpisodeRun): string {
+    if (test === undefined) return runHref(run);
+    if (attempt === undefined || number === undefined) return testHref(run, test, attempt ?? null);
+    return caseHref(run, test, attempt, number);
 }
 
 /** `payload=1.2 surface=wood`. */

@@ -20,7 +20,8 @@ export type Route =
 /** The selected part of a run. */
 export type Shown =
     | { what: 'overview' }
-    | { what: 'test'; id: number; attempt: number | null }
+    /** `case` is one of the attempt, such as an episode of a batch. */
+    | { what: 'test'; id: number; attempt: number | null; case?: number }
     | { what: 'fixture'; id: number }
     | { what: 'hook'; id: number };
 
@@ -45,16 +46,20 @@ function shown(kind: string | undefined, text: string | undefined, query: URLSea
     const id = Number(text);
     if (text === undefined || !Number.isInteger(id) || id < 0) return { what: 'overview' };
     if (kind === 'tests') {
-        const attempt = Number(query.get('attempt'));
-        return {
-            what: 'test',
-            id,
-            attempt: Number.isInteger(attempt) && attempt > 0 ? attempt : null,
-        };
+        const attempt = positive(query.get('attempt'));
+        const found = positive(query.get('case'));
+        // The cases of each attempt are numbered from 1.
+        const part = attempt === null || found === null ? {} : { case: found };
+        return { what: 'test', id, attempt, ...part };
     }
     if (kind === 'fixtures') return { what: 'fixture', id };
     if (kind === 'hooks') return { what: 'hook', id };
     return { what: 'overview' };
+}
+
+function positive(text: string | null): number | null {
+    const number = Number(text);
+    return Number.isInteger(number) && number > 0 ? number : null;
 }
 
 function decode(part: string): string {
@@ -87,8 +92,10 @@ export function hrefOf(route: Route): string {
 
 function tail(show: Shown): string {
     if (show.what === 'overview') return '';
-    const attempt = show.what === 'test' && show.attempt !== null ? `?attempt=${show.attempt}` : '';
-    return `/${show.what}s/${show.id}${attempt}`;
+    const base = `/${show.what}s/${show.id}`;
+    if (show.what !== 'test' || show.attempt === null) return base;
+    const part = show.case === undefined ? '' : `&case=${show.case}`;
+    return `${base}?attempt=${show.attempt}${part}`;
 }
 
 /** The directory of the campaign of which a run is a part. */
@@ -98,6 +105,8 @@ export function campaignOf(run: string): string | undefined {
 
 export const testHref = (run: string, id: number, attempt: number | null = null) =>
     hrefOf({ at: 'run', run, show: { what: 'test', id, attempt } });
+export const caseHref = (run: string, id: number, attempt: number, number: number) =>
+    hrefOf({ at: 'run', run, show: { what: 'test', id, attempt, case: number } });
 export const fixtureHref = (run: string, id: number) =>
     hrefOf({ at: 'run', run, show: { what: 'fixture', id } });
 export const hookHref = (run: string, id: number) =>

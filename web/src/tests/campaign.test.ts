@@ -80,10 +80,26 @@ test('an episode has the address of its run, and that leads to the campaign', ()
     const run = 'campaigns/grasp 1/workers/2/2026';
     const place = parseRoute(episodeHref({ run, test: 3, attempt: 7 }));
     expect(place).toEqual({ at: 'run', run, show: { what: 'test', id: 3, attempt: 7 } });
+    const batched = episodeHref({ run, test: 0, attempt: 1, case: 17 });
+    expect(batched).toMatch(/\/tests\/0\?attempt=1&case=17$/);
+    const part = { what: 'test', id: 0, attempt: 1, case: 17 };
+    expect(parseRoute(batched)).toEqual({ at: 'run', run, show: part });
     const overview = parseRoute(episodeHref({ run }));
     expect(overview).toEqual({ at: 'run', run, show: { what: 'overview' } });
     expect(campaignOf(run)).toBe('grasp 1');
     expect(campaignOf('2026')).toBeUndefined();
+});
+
+test('a case is one of an attempt', () => {
+    const shown = (query: string) => {
+        const route = parseRoute(`#/runs/2026/tests/3?${query}`);
+        return route.at === 'run' ? route.show : route;
+    };
+    const test = { what: 'test', id: 3 };
+    expect(shown('attempt=2&case=17')).toEqual({ ...test, attempt: 2, case: 17 });
+    expect(shown('case=17')).toEqual({ ...test, attempt: null });
+    for (const bad of ['0', '-1', '1.5', 'x', ''])
+        expect(shown(`attempt=2&case=${bad}`)).toEqual({ ...test, attempt: 2 });
 });
 
 test('a ranking says what it is ordered by', () => {

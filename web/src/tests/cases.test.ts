@@ -53,6 +53,16 @@ const NESTED = [
 ];
 
 describe('the cases of an attempt', () => {
+    test('know which episode they are, and what was reported about it', () => {
+        const start = { ...started(1, '17'), episode: { id: 17, seed: 4711 } } as Event;
+        const list = listOf([start]);
+        expect(list.get(1)?.episode).toEqual({ id: 17, seed: 4711 });
+        const end = { steps: 200, time_us: 4_000_000 };
+        list.apply({ ...finished(1, 90, 'failed'), episode: end } as Event);
+        expect(list.get(1)?.episode).toEqual({ id: 17, seed: 4711, ...end });
+        expect(listOf(NESTED).get(1)).not.toHaveProperty('episode');
+    });
+
     test('are a tree, also when they overlap', () => {
         const list = listOf(NESTED);
         expect(shown(list)).toEqual([

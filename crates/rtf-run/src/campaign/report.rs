@@ -11,7 +11,8 @@ use rtf_campaign::{EpisodeResult, Judge, Ledger, Verdict};
 use rtf_model::{Episode, EpisodeOutcome, TestAttempt};
 use rtf_web::{
     CampaignCell, CampaignMap, CampaignMapRow, CampaignParameter, CampaignProgress, CampaignReport,
-    CampaignSource, CampaignVersionRate, CampaignVersions, EpisodeProblem, EpisodeRun,
+    CampaignSource, CampaignVersionRate, CampaignVersions, EpisodeAttempt, EpisodeProblem,
+    EpisodeRun,
 };
 
 use super::directory::{CampaignDir, DESCRIPTION};
@@ -196,7 +197,10 @@ fn episode_run(campaign: &Path, run: &Path, problem: Option<TestAttempt>) -> Epi
     EpisodeRun {
         run: run.to_string_lossy().into_owned(),
         test: problem.map(|problem| problem.test.0),
-        attempt: problem.map(|problem| problem.attempt),
+        attempt: problem.map(|TestAttempt { attempt, case, .. }| EpisodeAttempt {
+            attempt,
+            case: case.map(|case| case.0),
+        }),
     }
 }
 

@@ -4,13 +4,14 @@
 use std::ops::ControlFlow;
 
 use axum::extract::State;
-use rtf_model::{Event, EventKind, FixtureId, HookId, MessageKind, Source, TestId};
+use rtf_model::{CaseId, Event, EventKind, FixtureId, HookId, MessageKind, Source, TestId};
 use rtf_report::journal::{EventHeader, parse_event};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
+use super::case_filter::CaseFilter;
 use super::problems::Problems;
-use super::query::{At, Number, PageQuery, QueryParams, values};
+use super::query::{At, CasePageQuery, Number, PageQuery, QueryParams, values};
 use crate::address;
 use crate::app::{App, JsonResult, JsonText};
 use crate::index::LineReader;
@@ -28,19 +29,53 @@ pub(super) type Path3 = At<(String, u32, u32)>;
 
 /// Which part of the journal, and which page of it.
 pub(super) struct DetailQuery {
-    pub(super) source: Source,
-    pub(super) number: u32,
-    pub(super) kind: &'static str,
-    pub(super) page: PageQuery,
+    source: Source,
+    number: u32,
+    kind: &'static str,
+    page: PageQuery,
+    /// Only this case and those that it contains.
+    case: Option<CaseId>,
 }
 
 /// In place of a kind of event: the starts and ends of questions.
 const QUESTION: &str = "question";
+/// In place of a kind of event: the starts and ends of cases.
+const CASE: &str = "case";
 
 impl DetailQuery {
+    /// A page of the events of a kind.
+    fn page_of((source, number): (Source, u32), kind: &'static str, page: PageQuery) -> Self {
+        Self { source, number, kind, page, case: None }
+    }
+
+    /// All events of a kind of an attempt of a test.
+    fn all_of(test: u32, number: u32, kind: &'static str) -> Self {
+        Self::page_of((Source::Test(TestId(test)), number), kind, PageQuery::default())
+    }
+
+    /// A page of the events of a kind of an attempt of a test, or of a case of it.
+    fn of_test((test, number): (u32, u32), kind: &'static str, query: CasePageQuery) -> Self {
+        Self { page: query.page(), ..Self::all_of(test, number, kind) }.in_case(query.case)
+    }
+
     /// The questions of an attempt of a test.
-    pub(super) fn questions_of(source: Source, number: u32) -> Self {
-        Self { source, number, kind: QUESTION, page: PageQuery { after: None, limit: None } }
+    pub(super) fn questions_of(test: u32, number: u32) -> Self {
+        Self::all_of(test, number, QUESTION)
+    }
+
+    /// The starts and ends of the cases of an attempt of a test.
+    pub(super) fn cases_of(test: u32, number: u32) -> Self {
+        Self::all_of(test, number, CASE)
+    }
+
+    /// The samples of an attempt of a test.
+    pub(super) fn samples_of(test: u32, number: u32) -> Self {
+        Self::all_of(test, number, "sampled")
+    }
+
+    /// Only what was reported in a case or in those that it contains.
+    pub(super) fn in_case(self, case: Option<u32>) -> Self {
+        Self { case: case.map(CaseId), ..self }
     }
 
     /// The entries of the page, and the number after which the next one starts.
@@ -74,23 +109,35 @@ impl DetailQuery {
         mut visit: impl FnMut(Event, usize) -> ControlFlow<()>,
     ) -> Result<(), Problem> {
         let mut lines = self.lines(run)?;
+        let mut filter = self.case.map(CaseFilter::new);
         while let Some(line) = lines.next().map_err(unreadable)? {
             let Ok(header) = serde_json::from_slice::<EventHeader>(line.text) else { continue };
+            if let Some(filter) = &mut filter
+                && *header.kind == *"case-started"
+                && header.detail_source() == Some(self.source)
+                && let Ok(event) = parse_event(line.text)
+            {
+                filter.add(&event);
+            }
             let is_before = self.page.after.is_some_and(|Number(after)| header.seq <= after);
             if !is_before
                 && self.wants(&header)
                 && let Ok(event) = parse_event(line.text)
+                && filter.as_ref().is_none_or(|filter| filter.contains(&event))
                 && visit(event, line.text.len()).is_break()
             {
                 break;
             }
         }
-        Ok(())
+        filter.map_or(Ok(()), |filter| filter.check())
     }
 
     fn wants(&self, header: &EventHeader) -> bool {
         let source = match self.kind {
             QUESTION => header.questioner(),
+            CASE => header
+                .detail_source()
+                .filter(|_| matches!(&*header.kind, "case-started" | "case-finished")),
             kind => header.detail_source().filter(|_| *header.kind == *kind),
         };
         source == Some(self.source)
@@ -107,7 +154,9 @@ impl DetailQuery {
             let number = self.number;
             return Err(Problem::not_found(format!("there is no {what} {number} of {id}")));
         };
-        let known = self.page.after.map_or(0, |Number(after)| index.positions.before(after));
+        // Which cases a case contains follows from the events since the start of the attempt.
+        let after = self.page.after.filter(|_| self.case.is_none());
+        let known = after.map_or(0, |Number(after)| index.positions.before(after));
         let end = place.end.unwrap_or(index.offset);
         let start = place.start.max(known);
         drop(index);
@@ -130,6 +179,24 @@ pub struct Kinds {
     limit: Option<usize>,
 }
 
+/// Which messages of an attempt of a test.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct CaseKinds {
+    /// Only those of this case and of the cases that it contains.
+    #[param(maximum = 4_294_967_295_i64)]
+    case: Option<u32>,
+    /// Only these kinds, separated by commas: `report`, `check`, `failure`, `error`.
+    #[param(pattern = "^(report|check|failure|error)(,(report|check|failure|error))*$")]
+    kind: Option<String>,
+    /// The `next` of the page before.
+    #[param(value_type = Option<u64>, maximum = 9_007_199_254_740_991_i64)]
+    after: Option<Number>,
+    /// How many entries at most.
+    #[param(minimum = 1, maximum = 1000, default = 100)]
+    limit: Option<usize>,
+}
+
 /// The kinds of messages.
 const KINDS: [(&str, MessageKind); 4] = [
     ("report", MessageKind::Report),
@@ -138,15 +205,8 @@ const KINDS: [(&str, MessageKind); 4] = [
     ("error", MessageKind::Error),
 ];
 
-async fn messages(
-    app: App,
-    run: String,
-    (source, number): (Source, u32),
-    kinds: Kinds,
-) -> JsonResult {
-    let page = PageQuery { after: kinds.after, limit: kinds.limit };
-    let part = DetailQuery { source, number, kind: "message", page };
-    let wanted = kinds.kind.map(|list| values("kind", &list, &KINDS)).transpose()?;
+async fn messages(app: App, run: String, part: DetailQuery, kinds: Option<String>) -> JsonResult {
+    let wanted = kinds.map(|list| values("kind", &list, &KINDS)).transpose()?;
     app.with_run(run, move |run| {
         let (messages, next) = part.read(run, |event| {
             let EventKind::Message { message, .. } = event.kind else { return None };
@@ -160,14 +220,15 @@ async fn messages(
 
 /// What an attempt of a test reported.
 #[utoipa::path(get, path = "/runs/{run}/tests/{test}/attempts/{number}/messages", tag = "details",
-    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), Kinds),
+    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), CaseKinds),
     responses((status = 200, body = Messages), Problems))]
 pub async fn test_messages(
     State(app): State<App>,
     At((run, test, number)): Path3,
-    QueryParams(kinds): QueryParams<Kinds>,
+    QueryParams(CaseKinds { case, kind, after, limit }): QueryParams<CaseKinds>,
 ) -> JsonResult {
-    messages(app, run, (Source::Test(TestId(test)), number), kinds).await
+    let page = CasePageQuery { case, after, limit };
+    messages(app, run, DetailQuery::of_test((test, number), "message", page), kind).await
 }
 
 /// What a fixture reported after one of its starts.
@@ -178,9 +239,11 @@ pub async fn test_messages(
 pub async fn fixture_messages(
     State(app): State<App>,
     At((run, fixture, number)): Path3,
-    QueryParams(kinds): QueryParams<Kinds>,
+    QueryParams(Kinds { kind, after, limit }): QueryParams<Kinds>,
 ) -> JsonResult {
-    messages(app, run, (Source::Fixture(FixtureId(fixture)), number), kinds).await
+    let source = Source::Fixture(FixtureId(fixture));
+    let page = PageQuery { after, limit };
+    messages(app, run, DetailQuery::page_of((source, number), "message", page), kind).await
 }
 
 /// What a run of a hook reported.
@@ -190,22 +253,24 @@ pub async fn fixture_messages(
 pub async fn hook_messages(
     State(app): State<App>,
     At((run, hook, number)): Path3,
-    QueryParams(kinds): QueryParams<Kinds>,
+    QueryParams(Kinds { kind, after, limit }): QueryParams<Kinds>,
 ) -> JsonResult {
-    messages(app, run, (Source::Hook(HookId(hook)), number), kinds).await
+    let source = Source::Hook(HookId(hook));
+    let page = PageQuery { after, limit };
+    messages(app, run, DetailQuery::page_of((source, number), "message", page), kind).await
 }
 
 /// What an attempt of a test measured.
 #[utoipa::path(get, path = "/runs/{run}/tests/{test}/attempts/{number}/measurements",
     tag = "details",
-    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), PageQuery),
+    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), CasePageQuery),
     responses((status = 200, body = Measurements), Problems))]
 pub async fn measurements(
     State(app): State<App>,
     At((run, test, number)): Path3,
-    QueryParams(page): QueryParams<PageQuery>,
+    QueryParams(page): QueryParams<CasePageQuery>,
 ) -> JsonResult {
-    let part = DetailQuery { source: Source::Test(TestId(test)), number, kind: "measured", page };
+    let part = DetailQuery::of_test((test, number), "measured", page);
     app.with_run(run, move |run| {
         let (measurements, next) = part.read(run, |event| {
             let EventKind::Measured { measurement, .. } = event.kind else { return None };
@@ -219,14 +284,14 @@ pub async fn measurements(
 /// What an attempt of a test attached.
 #[utoipa::path(get, path = "/runs/{run}/tests/{test}/attempts/{number}/attachments",
     tag = "details",
-    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), PageQuery),
+    params(("run" = String, Path), ("test" = u32, Path), ("number" = u32, Path), CasePageQuery),
     responses((status = 200, body = Attachments), Problems))]
 pub async fn attachments(
     State(app): State<App>,
     At((run, test, number)): Path3,
-    QueryParams(page): QueryParams<PageQuery>,
+    QueryParams(page): QueryParams<CasePageQuery>,
 ) -> JsonResult {
-    let part = DetailQuery { source: Source::Test(TestId(test)), number, kind: "attached", page };
+    let part = DetailQuery::of_test((test, number), "attached", page);
     app.with_run(run, move |run| {
         let (attachments, next) = part.read(run, |event| {
             let EventKind::Attached { attachment, .. } = event.kind else { return None };
@@ -247,8 +312,8 @@ pub async fn stacks(
     At((run, test, number)): Path3,
     QueryParams(page): QueryParams<PageQuery>,
 ) -> JsonResult {
-    let part =
-        DetailQuery { source: Source::Test(TestId(test)), number, kind: "stack-dumped", page };
+    let source = Source::Test(TestId(test));
+    let part = DetailQuery::page_of((source, number), "stack-dumped", page);
     app.with_run(run, move |run| {
         let (stacks, next) = part.read(run, |event| {
             let EventKind::StackDumped { text, .. } = event.kind else { return None };
@@ -259,13 +324,8 @@ pub async fn stacks(
     .await
 }
 
-async fn output(
-    app: App,
-    run: String,
-    (source, number): (Source, u32),
-    page: PageQuery,
-) -> JsonResult {
-    let part = DetailQuery { source, number, kind: "output", page };
+async fn output(app: App, run: String, of: (Source, u32), page: PageQuery) -> JsonResult {
+    let part = DetailQuery::page_of(of, "output", page);
     app.with_run(run, move |run| {
         let (output, next) = part.read(run, |event| {
             let EventKind::Output(output) = event.kind else { return None };

@@ -1,6 +1,7 @@
 //! Version 1 of the API: its routes, and its description made from them.
 
 mod campaigns;
+mod case_filter;
 mod cases;
 mod control;
 mod details;

@@ -91,6 +91,28 @@ pub struct PageQuery {
     pub limit: Option<usize>,
 }
 
+/// A page of a list of an attempt of a test.
+#[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct CasePageQuery {
+    /// Only those of this case and of the cases that it contains.
+    #[param(maximum = 4_294_967_295_i64)]
+    pub case: Option<u32>,
+    /// The `next` of the page before.
+    #[param(value_type = Option<u64>, maximum = 9_007_199_254_740_991_i64)]
+    pub after: Option<Number>,
+    /// How many entries at most.
+    #[param(minimum = 1, maximum = 1000, default = 100)]
+    pub limit: Option<usize>,
+}
+
+impl CasePageQuery {
+    /// The page.
+    pub fn page(&self) -> PageQuery {
+        PageQuery { after: self.after, limit: self.limit }
+    }
+}
+
 /// Default number of entries per page.
 const PAGE: usize = 100;
 /// How many it may have.

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use axum::Json;
 use axum::extract::rejection::JsonRejection;
 use axum::extract::{ConnectInfo, Extension, State};
-use rtf_model::{AnswerChannel, Respondent, Source, TestId};
+use rtf_model::{AnswerChannel, Respondent, TestId};
 use serde::Deserialize;
 use utoipa::ToSchema;
 
@@ -30,9 +30,8 @@ use crate::views::Questions;
     responses((status = 200, body = Questions), Problems))]
 pub async fn questions(State(app): State<App>, At((run, test, number)): Path3) -> JsonResult {
     app.with_run(run, move |run| {
-        let source = Source::Test(TestId(test));
         let mut questions = Questions::default();
-        DetailQuery::questions_of(source, number).each(run, |event, _| {
+        DetailQuery::questions_of(test, number).each(run, |event, _| {
             questions.take(event, |path| Some(address::file(&run.name, path)));
             ControlFlow::Continue(())
         })?;

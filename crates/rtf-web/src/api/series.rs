@@ -4,21 +4,24 @@
 use std::ops::ControlFlow;
 
 use axum::extract::State;
-use rtf_model::{EventKind, Samples, Source, TestId};
+use rtf_model::{EventKind, Samples};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
 use super::details::{DetailQuery, Path3};
 use super::problems::Problems;
-use super::query::{At, PageQuery, QueryParams};
+use super::query::{At, QueryParams};
 use crate::app::{App, JsonResult, JsonText};
 use crate::problem::Problem;
 use crate::views::{SignalList, Signals};
 
-/// Which part of the curves. The numbers are always those of the whole signal.
+/// Which samples, and which part of the curves. The numbers are always those of the whole signal.
 #[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub struct Window {
+    /// Only those of this case and of the cases that it contains.
+    #[param(maximum = 4_294_967_295_i64)]
+    case: Option<u32>,
     /// Points from this time on, in seconds.
     from: Option<f64>,
     /// Points up to this time, in seconds.
@@ -53,8 +56,7 @@ pub async fn series(
     QueryParams(window): QueryParams<Window>,
 ) -> JsonResult {
     let window = window.check()?;
-    let page = PageQuery { after: None, limit: None };
-    let part = DetailQuery { source: Source::Test(TestId(test)), number, kind: "sampled", page };
+    let part = DetailQuery::samples_of(test, number).in_case(window.case);
     app.with_run(run, move |run| {
         let mut all = SignalList::default();
         part.each(run, |event, _| {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use rtf_model::{AttemptCases, CaseRecord, Location, Parameter, Verdict};
+use rtf_model::{AttemptCases, CaseEpisode, CaseRecord, EpisodeEnd, Location, Parameter, Verdict};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -56,6 +56,36 @@ pub struct Case {
     /// Why it did not pass.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// The episode that it is, of a test that runs many.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub episode: Option<EpisodeOfCase>,
+}
+
+/// The episode that a case is, and what its test reported about it at its end.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct EpisodeOfCase {
+    /// The number of the episode.
+    pub id: u64,
+    /// For its random numbers.
+    pub seed: u32,
+    /// How many steps it took.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steps: Option<u64>,
+    /// Microseconds of simulated time that it took.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_us: Option<u64>,
+    /// The same text for the same first observation, such as its hash.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub first_observation: Option<String>,
+}
+
+impl EpisodeOfCase {
+    fn of(case: &CaseRecord) -> Option<Self> {
+        let CaseEpisode { id, seed } = case.start.episode?;
+        let end = case.finished.as_ref().and_then(|(_, finished)| finished.episode.clone());
+        let EpisodeEnd { steps, time_us, first_observation } = *end.unwrap_or_default();
+        Some(Self { id, seed, steps, time_us, first_observation })
+    }
 }
 
 /// A page of the cases of an attempt.
@@ -129,6 +159,7 @@ impl Case {
             superseded: case.is_superseded,
             verdict: case.verdict(),
             reason: case.reason().map(str::to_owned),
+            episode: EpisodeOfCase::of(case),
         }
     }
 }

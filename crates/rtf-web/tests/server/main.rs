@@ -5,6 +5,7 @@
 mod cases;
 mod client;
 mod damaged;
+mod episodes;
 mod files;
 mod fixture_values;
 mod history;

@@ -21,7 +21,12 @@ export interface Subject {
     id: number;
     /** The number of the attempt, start or run, from 1. */
     number: number;
+    /** Of an attempt, only this case and those that it contains. */
+    case?: number;
 }
+
+/** What is reported in a case. */
+const CASE_LISTS: readonly ListName[] = ['messages', 'measurements', 'attachments'];
 
 /** Fixtures and hooks have only these lists. */
 const LISTS: Record<Subject['kind'], readonly ListName[]> = {
@@ -74,7 +79,7 @@ export class Details {
         readonly subject: Subject,
     ) {
         const { kind, id, number } = subject;
-        this.key = `${kind}/${id}/${number}`;
+        this.key = `${kind}/${id}/${number}/${subject.case ?? ''}`;
         this.latest = this.known();
         // Subscribe, then load: events in between are in both and are dropped once.
         this.unwatch = run.watch(run.record.isOver ? [] : [`${kind}:${id}`], (events) =>
@@ -110,16 +115,18 @@ export class Details {
     }
 
     private async load(): Promise<void> {
-        const { kind } = this.subject;
+        const { kind, case: shown } = this.subject;
         const loaded = await this.attempt(async () => {
-            const lists = [...LISTS[kind], ...(kind === 'test' ? (['cases'] as const) : [])];
+            const own = shown === undefined ? LISTS[kind] : CASE_LISTS;
+            const lists = [...own, ...(kind === 'test' ? (['cases'] as const) : [])];
             await Promise.all([
                 ...lists.map((list) => this.pages(list, undefined, FIRST_PAGES)),
-                ...(kind === 'test' ? [this.loadSignals(), this.loadQuestions()] : []),
+                ...(kind === 'test' ? [this.loadSignals()] : []),
+                ...(kind === 'test' && shown === undefined ? [this.loadQuestions()] : []),
             ]);
             const missed = this.waiting ?? [];
             this.waiting = null;
-            missed.forEach((event) => this.add(event));
+            for (const event of missed) if (this.isInCase(event)) this.add(event);
         });
         this.isLoading = false;
         if (loaded) this.run.kept.set(this.key, this.all);
@@ -139,9 +146,9 @@ export class Details {
 
     /** A part of the subject. */
     private part<T>(name: string, query: Query = {}): Promise<T> {
-        const { kind, id, number } = this.subject;
+        const { kind, id, number, case: shown } = this.subject;
         const route = ['runs', this.run.name, `${kind}s`, id, PARTS[kind], number, name];
-        return get<T>(path(route, query), this.closing.signal);
+        return get<T>(path(route, { ...query, case: shown }), this.closing.signal);
     }
 
     private async loadSignals(): Promise<void> {
@@ -152,6 +159,10 @@ export class Details {
     private async loadQuestions(): Promise<void> {
         this.all.questions = (await this.part<Questions>('questions')).questions;
         this.version += 1;
+    }
+
+    private renewQuestions(): void {
+        if (this.subject.case === undefined) void this.attempt(() => this.loadQuestions());
     }
 
     private renewSignals(): void {
@@ -199,8 +210,11 @@ export class Details {
         let isChanged = false;
         for (const event of events) {
             if (!this.isOurs(event)) continue;
+            // Which cases the shown one contains is known when they are loaded.
+            const isKnown = this.waiting === null;
+            if (isKnown && !this.isInCase(event)) continue;
             if (event.type === 'sampled') this.renewSignals();
-            else if (isOfQuestion(event)) void this.attempt(() => this.loadQuestions());
+            else if (isOfQuestion(event)) this.renewQuestions();
             else if (this.waiting !== null) this.waiting.push(event);
             else this.add(event);
             isChanged = true;
@@ -224,6 +238,14 @@ export class Details {
         return kind === 'test' && 'test' in event && event.test === id;
     }
 
+    /** Whether an event is about the shown case or one that it contains. */
+    private isInCase(event: Event): boolean {
+        const { case: shown } = this.subject;
+        if (shown === undefined) return true;
+        const found = caseOf(event);
+        return found != null && this.all.cases.within(shown).has(found);
+    }
+
     private add(event: Event): void {
         const { cases, lists, more } = this.all;
         cases.apply(event);
@@ -238,6 +260,26 @@ export class Details {
         if (kind === 'test') return tests[id]?.attempts.length ?? 0;
         if (kind === 'fixture') return fixtures[id]?.starts.at(-1)?.number ?? 0;
         return hooks[id]?.runs.length ?? 0;
+    }
+}
+
+/** The case in which an event was reported, or that starts in it, or that finishes. */
+function caseOf(event: Event): number | null | undefined {
+    switch (event.type) {
+        case 'message':
+            return event.message.case;
+        case 'measured':
+            return event.measurement.case;
+        case 'sampled':
+            return event.samples.case;
+        case 'attached':
+            return event.attachment.case;
+        case 'case-started':
+            return event.parent;
+        case 'case-finished':
+            return event.case;
+        default:
+            return null;
     }
 }
 

@@ -52,11 +52,15 @@ export class CaseList {
             case 'case-finished': {
                 const found = this.byId.get(event.case);
                 if (found === undefined || found.verdict !== undefined) break;
+                const episode = found.episode && {
+                    ...found.episode,
+                    ...present(event.episode ?? {}),
+                };
                 this.byId.set(event.case, {
                     ...found,
                     verdict: event.verdict,
                     duration_us: event.duration_us ?? event.at - found.started,
-                    ...present({ carried: event.carried || null, reason: event.reason }),
+                    ...present({ carried: event.carried || null, reason: event.reason, episode }),
                 });
                 if (event.rerun) this.supersede(event.case);
                 break;
@@ -136,13 +140,14 @@ export class CaseList {
         const { case: id, name, parent, parameters, tags, at } = event;
         const location = event.location as Case['location'];
         const earlier_attempts = event.earlier_attempts || null;
+        const episode = event.episode && { seed: 0, ...event.episode };
         const above = parent == null ? undefined : this.byId.get(parent);
         return {
             case: id,
             name,
             path: above === undefined ? name : `${above.path}/${name}`,
             started: at,
-            ...present({ parent, earlier_attempts, parameters, tags, location }),
+            ...present({ parent, earlier_attempts, parameters, tags, location, episode }),
         };
     }
 }
