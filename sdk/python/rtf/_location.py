@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from types import FrameType, TracebackType
 
 
-# In addition to all modules whose names begin with `rtf.`.
-_OURS = frozenset({"rtf", "robottestingframework"})
+# In addition to all modules whose names begin with `rtf.`. `runpy` starts the host.
+_OURS = frozenset({"rtf", "robottestingframework", "runpy"})
 
 
 def at(file: str, line: int) -> dict[str, object]:
