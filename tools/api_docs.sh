@@ -20,7 +20,7 @@ quietly doxygen "$api/Doxyfile" || die "doxygen failed"
 
 python=$(tools/venv.sh docs)
 PYTHONPATH=sdk/python quietly "$python/pdoc" --output-directory "$api/python" \
-  rtf rtf.session '!rtf.host' '!rtf.frameworks' || die "pdoc failed"
+  rtf rtf.session rtf.gymnasium '!rtf.host' '!rtf.frameworks' || die "pdoc failed"
 
 messages=$(cd sdk/ruby && yard doc --quiet --no-save --no-cache --no-progress --readme README.md \
   --title 'rtf: Ruby' --exclude 'lib/rtf/host' --output-dir "$api/ruby" 'lib/**/*.rb' 2>&1) || die "yard failed" "$messages"
