@@ -9,8 +9,8 @@ use rtf_campaign::Campaign;
 use rtf_engine::run::QuestionReply;
 use rtf_report::console::{AskedHere, Operator, prompt, question_text};
 use rtf_report::escape;
-use rtf_run::campaign_operator::CampaignAnswer;
 use rtf_run::error::Failure;
+use rtf_run::operator::campaign::CampaignAnswer;
 use rtf_run::operator::{self, AnswerSink};
 
 use crate::pool::Pool;

@@ -11,8 +11,8 @@ use std::time::Duration;
 
 use rtf_report::escape;
 use rtf_run::campaign::directory::CampaignDir;
-use rtf_run::campaign_operator::OPERATOR_ON_STDIN;
 use rtf_run::error::Failure;
+use rtf_run::operator::campaign::OPERATOR_ON_STDIN;
 use rtf_run::spawn_self;
 
 /// The file with what a worker printed.

@@ -17,7 +17,6 @@
 //! changed file starts the next one, [`doctor`] checks the machine.
 
 pub mod campaign;
-pub mod campaign_operator;
 pub mod collector;
 pub mod control;
 pub mod debug;

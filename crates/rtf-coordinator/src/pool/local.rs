@@ -8,8 +8,8 @@ use std::time::Duration;
 use rtf_model::Episode;
 use rtf_report::console::AskedHere;
 use rtf_run::campaign::directory::CampaignDir;
-use rtf_run::campaign_operator::{CampaignAnswer, WorkerQuestions};
 use rtf_run::error::Failure;
+use rtf_run::operator::campaign::{CampaignAnswer, WorkerQuestions};
 use rtf_run::spawn_self;
 
 use super::{EndedWorker, Pool, WorkerEvent};

@@ -10,8 +10,8 @@ use std::time::Duration;
 use rtf_model::Episode;
 use rtf_report::console::AskedHere;
 use rtf_report::episode_results::EpisodeLine;
-use rtf_run::campaign_operator::CampaignAnswer;
 use rtf_run::error::Failure;
+use rtf_run::operator::campaign::CampaignAnswer;
 
 use super::assignment::Assignment;
 

@@ -1,11 +1,10 @@
 //! The person who can answer questions of tests: who is there, and the answers on the terminal of a
 //! run or of a campaign.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use rtf_engine::guard;
 use rtf_engine::run::{Control, QuestionReply};
 use rtf_model::{AnswerChannel, Question, Respondent};
 use rtf_report::background_writer::BackgroundWriter;
@@ -13,10 +12,16 @@ use rtf_report::console::{AskedHere, Operator};
 use rtf_report::escape;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::process::Pid;
-use rustix::termios::{QueueSelector, tcflush, tcgetpgrp, tcsetpgrp};
+use rustix::termios::{QueueSelector, tcflush};
 
-use crate::campaign_operator;
+pub use self::attendance::Attendance;
+use self::foreground::{BorrowedForeground, Foreground, foreground, guard_group};
+pub use self::foreground::{has_foreground, recover_terminal};
 use crate::control::ControlChannels;
+
+mod attendance;
+pub mod campaign;
+mod foreground;
 
 /// The longest line that a terminal passes.
 const LINE_BYTES: usize = 4096;
@@ -26,67 +31,6 @@ const POLL: Timespec = Timespec { tv_sec: 0, tv_nsec: 200_000_000 };
 
 /// How often a process in the background checks whether it has the terminal.
 const BACKGROUND: Duration = Duration::from_millis(500);
-
-/// Who can answer questions.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Attendance {
-    /// Whether an operator can answer on the terminal.
-    pub console: bool,
-    /// Whether an operator can answer on the terminal of the campaign whose worker this is.
-    pub campaign: bool,
-    /// Why no operator can answer, if none can.
-    pub unattended: Option<String>,
-}
-
-impl Attendance {
-    /// No operator can answer, unless there is a page.
-    pub fn on_page(has_page: bool, reason: &str) -> Self {
-        let unattended = (!has_page).then(|| reason.to_owned());
-        Self { console: false, campaign: false, unattended }
-    }
-
-    /// The questions of a worker are answered on the terminal of its campaign.
-    pub fn of_campaign() -> Self {
-        Self { console: false, campaign: true, unattended: None }
-    }
-
-    /// Finds out who can answer the questions of a run. `obstacle` is why the terminal of this process
-    /// is not one of an operator.
-    pub fn find(has_page: bool, obstacle: Option<&'static str>) -> Self {
-        match obstacle.or_else(no_console) {
-            None => Self { console: true, campaign: false, unattended: None },
-            Some(reason) => {
-                Self::on_page(has_page, &format!("{reason}, and there is no page (`--web`)"))
-            }
-        }
-    }
-
-    /// The test that is debugged has the terminal.
-    pub fn without_terminal(self, has_page: bool) -> Self {
-        if !self.console {
-            return self;
-        }
-        Self::on_page(has_page, "the test has the terminal, and there is no page (`--web`)")
-    }
-}
-
-/// Why an operator cannot answer on the terminal of this process.
-fn no_console() -> Option<&'static str> {
-    if is_ci(std::env::var("CI").ok().as_deref()) {
-        Some("the variable `CI` is set")
-    } else if !io::stdin().is_terminal() {
-        Some("standard input is no terminal")
-    } else if !io::stdout().is_terminal() || !io::stderr().is_terminal() {
-        Some("the output goes to no terminal")
-    } else {
-        None
-    }
-}
-
-/// Whether a variable `CI` has the value of a CI system.
-fn is_ci(value: Option<&str>) -> bool {
-    value.is_some_and(|value| !matches!(value, "" | "0" | "false"))
-}
 
 /// The question at the terminal.
 #[derive(Default)]
@@ -145,7 +89,7 @@ pub fn of_run(
     out: &BackgroundWriter,
 ) -> io::Result<Option<Operator>> {
     if attendance.campaign {
-        return campaign_operator::start(control.clone()).map(Some);
+        return campaign::start(control.clone()).map(Some);
     }
     if !attendance.console {
         return Ok(None);
@@ -184,69 +128,6 @@ pub fn user_name() -> String {
     let mut names = ["LOGNAME", "USER"].into_iter().filter_map(|name| std::env::var(name).ok());
     let number = || format!("user {}", rustix::process::getuid().as_raw());
     names.find(|name| !name.is_empty()).unwrap_or_else(number)
-}
-
-/// Which process group has the foreground of the terminal, and so may read from it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Foreground {
-    /// That of the guard, which the user started.
-    Guard,
-    /// That of this process, the runner.
-    Runner,
-    /// Another one: the run is in the background of a shell.
-    Other,
-}
-
-/// The group of the guard, this process's parent.
-fn guard_group() -> Option<Pid> {
-    rustix::process::getpgid(rustix::process::getppid()).ok()
-}
-
-fn foreground(guard: Option<Pid>) -> Foreground {
-    match tcgetpgrp(io::stdin()).ok() {
-        Some(group) if group == rustix::process::getpgrp() => Foreground::Runner,
-        group if group.is_some() && group == guard => Foreground::Guard,
-        _ => Foreground::Other,
-    }
-}
-
-/// The foreground of the terminal while this process reads an answer. The guard blocks SIGTTOU in
-/// both processes. Ctrl-C then interrupts this process, which handles it like the guard.
-struct BorrowedForeground(Option<Pid>);
-
-impl BorrowedForeground {
-    /// Takes it from the guard; `None` if that does not have it.
-    fn take(guard: Option<Pid>) -> Option<Self> {
-        let take = || tcsetpgrp(io::stdin(), rustix::process::getpgrp()).is_ok();
-        let has = match foreground(guard) {
-            Foreground::Runner => true,
-            Foreground::Guard => take(),
-            Foreground::Other => false,
-        };
-        has.then_some(Self(guard))
-    }
-}
-
-impl Drop for BorrowedForeground {
-    fn drop(&mut self) {
-        if let (Foreground::Runner, Some(guard)) = (foreground(self.0), self.0) {
-            // Fails if the terminal is gone.
-            let _ = tcsetpgrp(io::stdin(), guard);
-        }
-    }
-}
-
-/// Takes the terminal back from a runner that has died while it read an answer.
-pub fn recover_terminal(had_foreground: bool) {
-    if had_foreground {
-        guard::permit_background_output();
-        let _ = tcsetpgrp(io::stdin(), rustix::process::getpgrp());
-    }
-}
-
-/// Whether this process is in the foreground of its terminal.
-pub fn has_foreground() -> bool {
-    foreground(guard_group()) == Foreground::Runner
 }
 
 struct AnswerReader {
@@ -405,14 +286,5 @@ mod tests {
         assert_eq!(choose(&question(&[]), "SN-17").as_deref(), Ok("SN-17"));
         assert!(choose(&question(&[]), "").is_err());
         assert!(choose(&question(&[]), "\u{1b}[A").is_err());
-    }
-
-    #[test]
-    fn a_ci_system_sets_its_variable() {
-        for (value, expected) in
-            [(None, false), (Some(""), false), (Some("false"), false), (Some("true"), true)]
-        {
-            assert_eq!(is_ci(value), expected, "{value:?}");
-        }
     }
 }
