@@ -57,4 +57,4 @@ pub use report_file::{
     AnnotationReporter, FailureNotice, PrintAnnotations, ReportFile, WriteReport,
 };
 pub use reporter::{ReportError, Reporter};
-pub use words::{count as format_count, time as format_duration};
+pub use words::{count as format_count, p_value as format_p_value, time as format_duration};

@@ -22,6 +22,12 @@ pub(crate) fn plural(number: u64, noun: &str) -> Cow<'_, str> {
     }
 }
 
+/// `p = 0.0020`, `p < 0.0001`.
+#[must_use]
+pub fn p_value(p: f64) -> String {
+    if p < 0.0001 { "p < 0.0001".to_owned() } else { format!("p = {p:.4}") }
+}
+
 /// The path of an attachment, or that its file does not exist.
 pub(crate) fn attachment_place(attachment: &Attachment) -> Cow<'_, str> {
     if attachment.omitted {

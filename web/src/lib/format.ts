@@ -25,6 +25,11 @@ export function moment(micros: number): string {
     return `+${(micros / 1e6).toFixed(3)} s`;
 }
 
+/** The p value of a test: `p = 0.0020`, `p < 0.0001`. */
+export function pValue(p: number): string {
+    return p < 0.0001 ? 'p < 0.0001' : `p = ${p.toFixed(4)}`;
+}
+
 /** A number in full precision. */
 export function number(value: number): string {
     if (value === 0) return '0';

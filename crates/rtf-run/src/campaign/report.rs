@@ -9,6 +9,7 @@ use rtf_campaign::comparison::{Finding, VersionComparison, VersionRate};
 use rtf_campaign::forecast::forecast_text;
 use rtf_campaign::{EpisodeResult, Judge, Ledger, Verdict};
 use rtf_model::{Episode, EpisodeOutcome, TestAttempt};
+use rtf_report::format_p_value;
 use rtf_web::{
     CampaignCell, CampaignMap, CampaignMapRow, CampaignParameter, CampaignProgress, CampaignReport,
     CampaignSource, CampaignVersionRate, CampaignVersions, EpisodeAttempt, EpisodeProblem,
@@ -137,11 +138,11 @@ fn versions(versions: &TrialVersions, compared: Option<&ComparedTrials>) -> Camp
     let name = |index: usize| versions.values.get(index).map_or("", String::as_str);
     let finding = |found: &VersionComparison| {
         let (version, baseline) = (name(found.version - 1), name(0));
-        let p = found.results.significance.adjusted;
+        let p = format_p_value(found.results.significance.adjusted);
         match found.finding {
-            Finding::Worse => format!("{version} is worse than {baseline} (p = {p:.4})"),
-            Finding::Better => format!("{version} is better than {baseline} (p = {p:.4})"),
-            Finding::Undecided => format!("{version} and {baseline}: undecided (p = {p:.4})"),
+            Finding::Worse => format!("{version} is worse than {baseline} ({p})"),
+            Finding::Better => format!("{version} is better than {baseline} ({p})"),
+            Finding::Undecided => format!("{version} and {baseline}: undecided ({p})"),
         }
     };
     CampaignVersions {

@@ -79,7 +79,7 @@ fn several_versions_are_compared_by_condition() {
         only in 2       0
         in neither      0
       difference -35.0 % (-56.7 to -11.7)
-      p = 0.0156, adjusted 0.0312 (McNemar, Holm for 2 claims)
+      p = 0.0156, adjusted p = 0.0312 (McNemar, Holm for 2 claims)
       2 is worse than 1 (p <= 0.05)
 
     3 against 1: the same episodes, in pairs
@@ -93,7 +93,7 @@ fn several_versions_are_compared_by_condition() {
       undecided: `rtf campaign plan` prints how many episodes a difference needs
 
     measurements, means of 1 and 2 (exploratory, p adjusted for 2)
-      Grasp sag  0.425000 → 0.850000 rad  +0.425000 (0.310486 to 0.539514) rad  p = 0.0001, adjusted 0.0002  (20 values)
+      Grasp sag  0.425000 → 0.850000 rad  +0.425000 (0.310486 to 0.539514) rad  p = 0.0001, adjusted p = 0.0002  (20 values)
 
     measurements, means of 1 and 3 (exploratory, p adjusted for 2)
       Grasp sag  0.425000 → 0.425000 rad  +0.000000 (0.000000 to 0.000000) rad  p = 1.0000, adjusted 1.0000  (20 values)
@@ -105,7 +105,7 @@ fn several_versions_are_compared_by_condition() {
         3     13 of 13 passed  100.0 %   77.2 to 100.0  difference +0.0 % (-22.8 to +22.8)  p = 1.0000, adjusted 1.0000
       1.5
         1      7 of 7 passed  100.0 %   64.6 to 100.0
-        2      0 of 7 passed    0.0 %    0.0 to  35.4  difference -100.0 % (-100.0 to -49.9)  p = 0.0156, adjusted 0.0625
+        2      0 of 7 passed    0.0 %    0.0 to  35.4  difference -100.0 % (-100.0 to -49.9)  p = 0.0156, adjusted p = 0.0625
         3      7 of 7 passed  100.0 %   64.6 to 100.0  difference +0.0 % (-35.4 to +35.4)  p = 1.0000, adjusted 1.0000
     ----- stderr
     ");

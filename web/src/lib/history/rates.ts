@@ -2,6 +2,7 @@
 
 import type { CampaignChange, CampaignSeries, RatePoint } from '../../generated/api';
 import { intervalText, percent as exact, rateAxes } from '../campaign';
+import { pValue } from '../format';
 import { percent } from './trends';
 
 /** The height of a plot. */
@@ -49,6 +50,5 @@ export function rateText(rate: RatePoint['rate']): string {
 /** A change in words: `97.5 % → 37.5 % (-60 %)`, with the number of episodes. */
 export function rateChangeText({ before, after, p_value: p }: CampaignChange): string {
     const [from, to] = [before.rate.value, after.rate.value];
-    const chance = p < 0.0001 ? 'p < 0.0001' : `p = ${p.toFixed(4)}`;
-    return `${exact(from)} → ${exact(to)} (${percent(to - from, true)}), ${chance}`;
+    return `${exact(from)} → ${exact(to)} (${percent(to - from, true)}), ${pValue(p)}`;
 }

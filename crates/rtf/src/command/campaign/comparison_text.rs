@@ -6,7 +6,7 @@ use rtf_campaign::comparison::{
     ByCondition, Comparison, ConditionComparison, Finding, MeasurementComparison, Pairing,
     ResultComparison, Significance, VersionComparison, VersionRate,
 };
-use rtf_report::escape;
+use rtf_report::{escape, format_p_value};
 use rtf_run::campaign::trials::Unblinded;
 use rtf_run::campaign::version::LoadedVersion;
 use rtf_run::diagnostics::count;
@@ -163,10 +163,10 @@ fn print_conditions(out: &mut dyn Write, by: &ByCondition) -> io::Result<()> {
 
 /// `p = 0.0020`, and if there are several claims, the adjusted one.
 fn significance_text(significance: &Significance, claims: usize) -> String {
-    let Significance { p_value, adjusted } = significance;
+    let Significance { p_value, adjusted } = *significance;
     match claims {
-        1 => format!("p = {p_value:.4}"),
-        _ => format!("p = {p_value:.4}, adjusted {adjusted:.4}"),
+        1 => format_p_value(p_value),
+        _ => format!("{}, adjusted {}", format_p_value(p_value), format_p_value(adjusted)),
     }
 }
 

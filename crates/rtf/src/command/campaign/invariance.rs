@@ -15,7 +15,7 @@ use rtf_coordinator::summary::EarlyEnd;
 use rtf_coordinator::worker::Answers;
 use rtf_engine::signal::SignalListener;
 use rtf_plan::suite::Spanned;
-use rtf_report::escape;
+use rtf_report::{escape, format_p_value};
 use rtf_run::campaign::directory::{CampaignDir, Description};
 use rtf_run::campaign::version::LoadedVersion;
 use rtf_run::campaign::{self, LoadedCampaign};
@@ -213,7 +213,7 @@ fn text(result: &VariationResult) -> String {
         parts.push(format!("{} measure other values", count(measure_differently, "episode")));
     }
     if let Some(p_value) = result.p_value.filter(|_| changed > 0) {
-        parts.push(format!("p = {p_value:.4} (McNemar)"));
+        parts.push(format!("{} (McNemar)", format_p_value(p_value)));
     }
     if parts.is_empty() {
         return format!("the same results in {}", count(episodes, "episode"));

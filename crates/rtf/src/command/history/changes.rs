@@ -6,7 +6,7 @@ use clap::ArgMatches;
 use rtf_history::TestAttributes;
 use rtf_history::answers::{CampaignChange, RateSegment, SeriesChange};
 use rtf_history::statistics::Basis;
-use rtf_report::{escape, format_count};
+use rtf_report::{escape, format_count, format_p_value};
 use rtf_run::history::time;
 
 use super::{campaigns, failure, open, print_both, select, text};
@@ -56,13 +56,10 @@ fn write_rate(out: &mut dyn Write, found: &CampaignChange) -> io::Result<()> {
     )?;
     write!(out, "  since {}", escape::line(&found.directory))?;
     write_commits(out, [&found.commit_before, &found.commit])?;
-    let p = match found.p_value {
-        p if p < 0.0001 => "p < 0.0001".to_owned(),
-        p => format!("p = {p:.4}"),
-    };
     writeln!(
         out,
-        ", {p}, episodes: {} before, {} since",
+        ", {}, episodes: {} before, {} since",
+        format_p_value(found.p_value),
         episodes(&found.before),
         episodes(&found.after)
     )
