@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use mlua::{Function, Lua, Table};
+use mlua::{Function, Lua, Table, ffi};
 use rtf_host::Session;
 use rtf_model::protocol::Plugin;
 
@@ -45,8 +45,22 @@ impl PluginState {
         }
         search_path::extend(&lua, Path::new(&plugin.file))?;
         sdk.assign(&lua, session, plugin)?;
-        lua.gc_restart();
+        restart_collector(&lua)?;
         Ok((lua, sdk.call))
+    }
+}
+
+/// Starts the garbage collector as it is after a collection, which would find nothing: it begins
+/// when as much again is in use, Lua's default.
+fn restart_collector(lua: &Lua) -> mlua::Result<()> {
+    lua.gc_restart();
+    let kib = i32::try_from(lua.used_memory() / 1024).unwrap_or(i32::MAX);
+    // SAFETY: a step of a negative size does nothing but lower the collector's debt.
+    #[expect(unsafe_code, reason = "mlua has no function for it")]
+    unsafe {
+        lua.exec_raw((), |state| {
+            ffi::lua_gc(state, ffi::LUA_GCSTEP, -kib);
+        })
     }
 }
 

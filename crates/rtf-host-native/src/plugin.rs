@@ -3,6 +3,7 @@
 
 use std::ffi::{CString, NulError, c_char, c_int, c_void};
 use std::path::Path;
+use std::sync::Once;
 
 use rtf_host::{HostPlugin, LoadError, PluginKind, Session, Step, StepEnd, TestNotification};
 use rtf_model::protocol::{
@@ -57,8 +58,9 @@ impl HostPlugin for NativeHost {
     }
 
     fn idle(&mut self) {
+        static PRELOADED: Once = Once::new();
         // Forks inherit it from their server.
-        library::preload(CPP_RUNTIME, Lookup::Lazy);
+        PRELOADED.call_once(|| library::preload(CPP_RUNTIME, Lookup::Lazy));
     }
 
     fn load(&mut self, kind: PluginKind, plugin: &Plugin) -> Result<(), LoadError> {

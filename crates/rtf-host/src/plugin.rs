@@ -100,8 +100,8 @@ pub trait HostPlugin {
     /// Called once, with the runner's first request, before anything is loaded.
     fn prepare(&mut self, _initialize: &Initialize) {}
 
-    /// Called when the runner has started the host before there is a plug-in for it, so
-    /// that the host can prepare for the most likely plug-in.
+    /// Called when the runner has started the host before there is a plug-in for it, and
+    /// between tests that share the host, so that it can prepare for the most likely plug-in.
     fn idle(&mut self) {}
 
     /// Loads a plug-in. At most one is loaded at a time.

@@ -36,7 +36,12 @@ pub fn serve(session: &Session, host: impl HostPlugin) -> std::io::Result<()> {
     };
     reader.spawn()?;
     let mut is_last = server.handle(first);
-    while !is_last && let Some(incoming) = session.next() {
+    while !is_last {
+        if server.shared.is_some() {
+            // At the same time, the runner evaluates the last test.
+            server.host.idle();
+        }
+        let Some(incoming) = session.next() else { break };
         is_last = server.handle(incoming);
     }
     Ok(())

@@ -1,5 +1,6 @@
 //! A host whose plug-ins are functions, and the runner at the other end of its channel.
 
+use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
 use std::os::unix::net::UnixStream;
 use std::time::Duration;
@@ -127,7 +128,9 @@ fn describe(line: &Value) -> String {
             format!("start {case} in {parent}: {}{episode}", text("name"))
         }
         "case-finished" => {
-            let end = params.get("episode").map_or(String::new(), |end| format!(" {end}"));
+            // Another crate of the workspace decides whether the maps of serde_json are sorted.
+            let end = params.get("episode").and_then(Value::as_object).map(BTreeMap::from_iter);
+            let end = end.map_or(String::new(), |end| format!(" {}", json!(end)));
             let words = format!("end {case} {} {}", text("outcome"), text("reason"));
             format!("{}{end}", words.trim_end())
         }

@@ -29,7 +29,7 @@ pub struct Episode {
 }
 
 impl Episode {
-    /// An episode that may run beside others.
+    /// An episode that may run at the same time as others.
     #[must_use]
     pub fn new(id: u64, seed: u32, parameters: Vec<Parameter>) -> Self {
         Self { id, seed, parameters, alone: false, masked: Vec::new() }

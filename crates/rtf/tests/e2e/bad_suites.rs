@@ -30,7 +30,7 @@ fn an_unknown_attribute() {
     2 |   <test timout="3s">EncoderTest.lua</test>
       |         ^^^^^^ not known in `<test>`
       |
-      = note: `<test>` can have the attributes `name`, `type`, `param`, `cases`, `repetition`, `tags`, `timeout`, `case-timeout`, `load-timeout`, `setup-timeout`, `teardown-timeout`, `slow`, `grace`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `critical`, `exclusive`, `isolation`, `middleware`, `fork`, `expect`, `issue`, `until`, `was`
+      = note: `<test>` can have the attributes `name`, `type`, `param`, `cases`, `repetition`, `tags`, `timeout`, `case-timeout`, `load-timeout`, `setup-timeout`, `teardown-timeout`, `slow`, `grace`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `critical`, `exclusive`, `isolation`, `middleware`, `fork`, `slots`, `max-steps`, `max-time`, `expect`, `issue`, `until`, `was`
       = help: did you mean `timeout`?
 
     1 error; nothing was started

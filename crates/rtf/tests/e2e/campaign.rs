@@ -199,7 +199,7 @@ fn an_episode_is_repeated_from_the_file_or_the_results() {
 
 #[test]
 fn an_episode_runs_again_with_the_settings_of_its_campaign() {
-    let folder = folder(SUITE, &fixed(2, "0.5"));
+    let folder = folder(SUITE, &fixed(12, "0.5"));
     let test = "TestCase = {}\nfunction TestCase.run()\n  \
         rtf.check(os.getenv('RTF_PARAM_MODE') == 'good', 'bad mode')\nend\n";
     folder.file("Grasp.lua", test);

@@ -61,7 +61,7 @@ fn mistakes_in_filters_are_all_shown_with_those_of_the_suite() {
     2 |   <test tpye="lua">P.lua</test>
       |         ^^^^ not known in `<test>`
       |
-      = note: `<test>` can have the attributes `name`, `type`, `param`, `cases`, `repetition`, `tags`, `timeout`, `case-timeout`, `load-timeout`, `setup-timeout`, `teardown-timeout`, `slow`, `grace`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `critical`, `exclusive`, `isolation`, `middleware`, `fork`, `expect`, `issue`, `until`, `was`
+      = note: `<test>` can have the attributes `name`, `type`, `param`, `cases`, `repetition`, `tags`, `timeout`, `case-timeout`, `load-timeout`, `setup-timeout`, `teardown-timeout`, `slow`, `grace`, `after-collapse`, `leaks`, `retries`, `retry-delay`, `critical`, `exclusive`, `isolation`, `middleware`, `fork`, `slots`, `max-steps`, `max-time`, `expect`, `issue`, `until`, `was`
       = help: did you mean `type`?
 
     error: invalid filter

@@ -218,6 +218,7 @@ fn help_of_run() {
           --episodes <LIST>    Run the suite FILE once for each episode of the list LIST, see `rtf
                                campaign episodes`; `-` reads it from standard input while the episodes
                                run
+          --slots <N>          Run N episodes at a time, instead of the `slots` of the test
           --dry-run            List the selected tests without running them
 
     Repetition:
@@ -321,6 +322,7 @@ const VERBS: [&str; 47] = [
     "ament-dir",
     "campaign-compare",
     "campaign-episodes",
+    "campaign-invariance",
     "campaign-plan",
     "campaign-run",
     "campaign-search",

@@ -29,9 +29,9 @@ use crate::cli::{CampaignFormat, CampaignInvarianceArgs};
 use crate::command::VerbResult;
 use crate::request::config;
 
-/// The variable that tells the SDK's adapter for vector environments to use its other mode.
+/// The variable by which the SDK's adapter for vector environments uses its other mode.
 const MODE: &str = "RTF_VECTOR_MODE";
-/// Enough confidence for a claim that nobody reads.
+/// Enough confidence for a claim that no caller reads.
 const CONFIDENCE: f64 = 0.95;
 
 /// Runs the episodes in several ways, and compares the results.
