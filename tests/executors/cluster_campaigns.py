@@ -23,6 +23,28 @@ GRASP = """function TestCase.run()
   rtf.check(tonumber(os.getenv("RTF_PARAM_LOAD")) < 1, "too heavy")
 end
 """
+# The same in a test that runs four episodes at a time.
+BATCH = """import os
+import time
+from pathlib import Path
+
+import rtf
+
+
+class Batch(rtf.EpisodeTest):
+    def episode(self, episode):
+        folder = Path(os.environ["RTF_PARAM_DIR"])
+        node = os.environ.get("SLURMD_NODENAME", "local")
+        with (folder / "ran").open("a") as ran:
+            ran.write(f"{episode.id} {node}\\n")
+        for _ in range(20):
+            time.sleep(0.005)
+            yield
+        while (folder / "hold").exists():
+            time.sleep(0.05)
+            yield
+        return float(episode.parameter("load")) < 1 or "too heavy"
+"""
 SUITE = '<suite name="grasp" {attributes}><test>Grasp.lua</test></suite>'
 CAMPAIGN = """<campaign suite="{suite}.xml" episodes="{episodes}" seed="3">
   <parameter name="load" distribution="uniform" low="0" high="2"/>
@@ -30,6 +52,9 @@ CAMPAIGN = """<campaign suite="{suite}.xml" episodes="{episodes}" seed="3">
   {stop}
 </campaign>
 """
+
+SLOTS = 4
+"""How many episodes a batch has at a time."""
 
 Results = dict[int, tuple[str, str]]
 
@@ -43,6 +68,10 @@ class Campaigns:
         self.dir = directory
         (directory / "Grasp.lua").write_text(GRASP)
         (directory / "grasp.xml").write_text(SUITE.format(attributes=""))
+        (directory / "Batch.py").write_text(BATCH)
+        (directory / "batch.xml").write_text(
+            f'<suite name="batch"><test slots="{SLOTS}">Batch.py</test></suite>'
+        )
         # The only robot of the cluster.
         (directory / "robot.xml").write_text(SUITE.format(attributes='requires="robot"'))
 

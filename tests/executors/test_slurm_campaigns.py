@@ -6,7 +6,7 @@ import os
 import signal
 
 import pytest
-from cluster_campaigns import Campaigns
+from cluster_campaigns import SLOTS, Campaigns
 from slurm_cluster import jobs, scontrol, start_waiting_tasks
 from waiting import EPISODES, commands, equal, expect, finish, finish_with_output, until
 
@@ -65,6 +65,32 @@ def test_the_episode_of_a_killed_worker_is_repeated(campaigns: Campaigns) -> Non
     equal(sorted(campaigns.results()), list(range(1, EPISODES + 1)))
     equal(len(list((campaigns.newest() / "arrays").iterdir())), 2)
     equal(set(campaigns.recorded().values()), {1})
+
+
+def test_batches_on_a_failed_node_and_in_a_killed_worker(campaigns: Campaigns) -> None:
+    """The episodes that they had at a time are repeated: each has one final result."""
+    finish(campaigns.start("--workers", "1", suite="batch"), 0)
+    expected = campaigns.results()
+    equal({outcome for outcome, _ in expected.values()}, {"passed", "failed"})
+    (campaigns.dir / "ran").unlink()
+    process = campaigns.start_in_cluster(suite="batch")
+    until("some episodes have results", lambda: campaigns.recorded().total() >= SLOTS)
+    campaigns.hold()
+
+    def open_on(node: str) -> int:
+        started = {episode for episode, place in campaigns.ran() if place == node}
+        return len(started - set(campaigns.recorded()))
+
+    until("all wait", lambda: all(open_on(node) == 2 * SLOTS for node in ("n1", "n2")))
+    scontrol("update", "NodeName=n2", "State=DOWN", "Reason=test")
+    until("two tasks wait", lambda: list(jobs().values()).count("BeginTime") == 2)
+    worker = next(iter(commands(lambda command: f":{campaigns.newest()}/arrays/1" in command)))
+    os.kill(worker, signal.SIGKILL)
+    start_waiting_tasks()
+    campaigns.release()
+    output, _ = finish_with_output(process, 0)
+    expect("errors and collapses of the bench" in output, output)
+    equal(campaigns.results(), expected)
 
 
 def test_a_decided_claim_ends_the_array(campaigns: Campaigns) -> None:
