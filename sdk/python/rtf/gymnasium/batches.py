@@ -22,6 +22,10 @@ def row(space: spaces.Space[Any], batch: Any, slot: int) -> Any:
 
 def rows_with_nan(space: spaces.Space[Any], batch: Any, slots: int) -> NDArray[np.bool_]:
     """Return which observations contain a number that is NaN: an array of the shape (slots,)."""
+    if space.shape is not None and space.dtype is not None:
+        if np.issubdtype(space.dtype, np.inexact):
+            return np.isnan(batch).reshape(slots, -1).any(axis=1)  # type: ignore[no-any-return]
+        return np.zeros(slots, np.bool_)
     found = np.zeros(slots, np.bool_)
     if isinstance(space, spaces.Dict):
         for name, one in space.spaces.items():
@@ -29,13 +33,16 @@ def rows_with_nan(space: spaces.Space[Any], batch: Any, slots: int) -> NDArray[n
     elif isinstance(space, spaces.Tuple):
         for one, part in zip(space.spaces, batch):
             found |= rows_with_nan(one, part, slots)
-    elif space.dtype is not None and np.issubdtype(space.dtype, np.inexact):
-        found |= np.isnan(batch).reshape(slots, -1).any(axis=1)
     return found
 
 
 def shape_problem(space: spaces.Space[Any], batch: Any, name: str) -> str | None:
     """Return what is wrong with the form of actions or observations of all slots."""
+    if space.shape is not None:
+        got = np.shape(batch)
+        if got == space.shape:
+            return None
+        return f"{name} of the shape {got}, expected {space.shape}: a row for each slot"
     if isinstance(space, spaces.Dict):
         keys = set(space.spaces)
         if not isinstance(batch, dict) or set(batch) != keys:
@@ -50,10 +57,7 @@ def shape_problem(space: spaces.Space[Any], batch: Any, name: str) -> str | None
             for index, (one, part) in enumerate(zip(space.spaces, batch))
         ]
     else:
-        got, expected = np.shape(batch), space.shape
-        if expected is None or got == expected:
-            return None
-        return f"{name} of the shape {got}, expected {expected}: a row for each slot"
+        return None
     return next((it for it in (shape_problem(*part) for part in parts) if it is not None), None)
 
 
