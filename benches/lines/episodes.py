@@ -29,6 +29,8 @@ PROCESS_COUNTS = (10, 40)
 SHARED_COUNTS = (200, 2000)
 SLOTS_COUNTS = (1000, 20_000)
 
+CPP_PROCESS = "rtf, C++, own process"
+CPP_SHARED = "rtf, C++, shared"
 LUA_PROCESS = "rtf, Lua, own process"
 LUA_SHARED = "rtf, Lua, shared"
 PYTHON_PROCESS = "rtf, Python, own process"
@@ -59,7 +61,10 @@ def group(bench: Bench) -> Group:
     directory.mkdir(exist_ok=True)
     for file in FILES:
         shutil.copy(SOURCES / file, directory)
+    shutil.copy(bench.directory / "Trivial.so", directory)
     works = [
+        slope(bench, directory, CPP_PROCESS, "<test>Trivial.so</test>", SHARED_COUNTS),
+        slope(bench, directory, CPP_SHARED, shared("Trivial.so"), SHARED_COUNTS),
         slope(bench, directory, LUA_PROCESS, "<test>Trivial.lua</test>", SHARED_COUNTS),
         slope(bench, directory, LUA_SHARED, shared("Trivial.lua"), SHARED_COUNTS),
         slope(bench, directory, PYTHON_PROCESS, "<test>Trivial.py</test>", PROCESS_COUNTS),
@@ -67,6 +72,8 @@ def group(bench: Bench) -> Group:
         slope(bench, directory, PYTHON_SLOTS, slots("EmptyEpisodes.py"), SLOTS_COUNTS),
     ]
     lines = [
+        Line("episode, C++, shared", CPP_SHARED, FURTHER, CPP_PROCESS),
+        Line("episodes, C++, shared: start", CPP_SHARED, START, CPP_PROCESS),
         Line("episode, Lua, shared", LUA_SHARED, FURTHER, LUA_PROCESS),
         Line("episodes, Lua, shared: start", LUA_SHARED, START, LUA_PROCESS),
         Line("episode, Python, shared", PYTHON_SHARED, FURTHER, PYTHON_PROCESS),
