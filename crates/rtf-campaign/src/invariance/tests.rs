@@ -63,7 +63,7 @@ fn each_variation_has_its_cause() {
     }
     let little = |episode: &mut ComparedEpisode| {
         episode.values.values_mut().for_each(|x| *x *= 1.0 + 1e-6);
-        episode.passed = Some(episode.id % 5 > 0 || episode.id == 10);
+        episode.passed = Some(!episode.id.is_multiple_of(5) || episode.id == 10);
     };
     assert_eq!(causes_of(ManySlots, little, None), [BatchArithmetic]);
 }
@@ -74,7 +74,7 @@ fn results_that_are_not_exact_need_more_than_one_change() {
     let mut third = clean();
     third.iter_mut().for_each(flip);
     assert_eq!(causes_of(Variation::ManySlots, flip, Some(&third)), []);
-    let worse = |episode: &mut ComparedEpisode| episode.passed = Some(episode.id % 2 == 0);
+    let worse = |episode: &mut ComparedEpisode| episode.passed = Some(episode.id.is_multiple_of(2));
     let causes = causes_of(Variation::ManySlots, worse, Some(&third));
     assert_eq!(causes, [Cause::SharedBetweenSlots]);
 }

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use rtf_engine::guard;
 use rtf_engine::run::{Control, QuestionReply};
 use rtf_model::{AnswerChannel, Question, Respondent};
 use rtf_report::background_writer::BackgroundWriter;

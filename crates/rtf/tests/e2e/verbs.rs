@@ -317,7 +317,7 @@ fn bash_reads_its_completions() {
 }
 
 /// The verbs with a page of the manual, in its order.
-const VERBS: [&str; 47] = [
+const VERBS: [&str; 48] = [
     "ada-dir",
     "ament-dir",
     "campaign-compare",
