@@ -89,24 +89,24 @@ fn several_versions_are_compared_by_condition() {
         only in 3       0
         in neither      0
       difference +0.0 % (-16.1 to +16.1)
-      p = 1.0000, adjusted 1.0000 (McNemar, Holm for 2 claims)
+      p = 1.0000, adjusted p = 1.0000 (McNemar, Holm for 2 claims)
       undecided: `rtf campaign plan` prints how many episodes a difference needs
 
     measurements, means of 1 and 2 (exploratory, p adjusted for 2)
       Grasp sag  0.425000 → 0.850000 rad  +0.425000 (0.310486 to 0.539514) rad  p = 0.0001, adjusted p = 0.0002  (20 values)
 
     measurements, means of 1 and 3 (exploratory, p adjusted for 2)
-      Grasp sag  0.425000 → 0.425000 rad  +0.000000 (0.000000 to 0.000000) rad  p = 1.0000, adjusted 1.0000  (20 values)
+      Grasp sag  0.425000 → 0.425000 rad  +0.000000 (0.000000 to 0.000000) rad  p = 1.0000, adjusted p = 1.0000  (20 values)
 
     by payload (exploratory, p adjusted for 4)
       0.5
         1     13 of 13 passed  100.0 %   77.2 to 100.0
-        2     13 of 13 passed  100.0 %   77.2 to 100.0  difference +0.0 % (-22.8 to +22.8)  p = 1.0000, adjusted 1.0000
-        3     13 of 13 passed  100.0 %   77.2 to 100.0  difference +0.0 % (-22.8 to +22.8)  p = 1.0000, adjusted 1.0000
+        2     13 of 13 passed  100.0 %   77.2 to 100.0  difference +0.0 % (-22.8 to +22.8)  p = 1.0000, adjusted p = 1.0000
+        3     13 of 13 passed  100.0 %   77.2 to 100.0  difference +0.0 % (-22.8 to +22.8)  p = 1.0000, adjusted p = 1.0000
       1.5
         1      7 of 7 passed  100.0 %   64.6 to 100.0
         2      0 of 7 passed    0.0 %    0.0 to  35.4  difference -100.0 % (-100.0 to -49.9)  p = 0.0156, adjusted p = 0.0625
-        3      7 of 7 passed  100.0 %   64.6 to 100.0  difference +0.0 % (-35.4 to +35.4)  p = 1.0000, adjusted 1.0000
+        3      7 of 7 passed  100.0 %   64.6 to 100.0  difference +0.0 % (-35.4 to +35.4)  p = 1.0000, adjusted p = 1.0000
     ----- stderr
     ");
     let json = folder.rtf(&[&by[..], &["--format", "json"]].concat());
@@ -171,12 +171,12 @@ fn results_of_other_programs_are_versions() {
 
     2 against 1: independent, not in pairs: the ids or seeds of episodes differ
       difference +0.0 % (-23.7 to +23.7)
-      p = 1.0000, adjusted 1.0000 (Fisher, Holm for 2 claims)
+      p = 1.0000, adjusted p = 1.0000 (Fisher, Holm for 2 claims)
       undecided: `rtf campaign plan` prints how many episodes a difference needs
 
     3 against 1: independent, not in pairs: an episode has no seed
       difference +10.0 % (-38.6 to +42.3)
-      p = 1.0000, adjusted 1.0000 (Fisher, Holm for 2 claims)
+      p = 1.0000, adjusted p = 1.0000 (Fisher, Holm for 2 claims)
       undecided: `rtf campaign plan` prints how many episodes a difference needs
     ----- stderr
     ");
