@@ -63,6 +63,41 @@ def test_compared_numbers_are_reported(tmp_path: Path) -> None:
     ]
 
 
+def test_a_forked_process_ends_with_a_signal_as_without_rtf(tmp_path: Path) -> None:
+    text = (
+        "  def test_a(self):\n"
+        "    for _ in range(200):\n"
+        "      child = os.fork()\n"
+        "      if child == 0:\n"
+        "        time.sleep(5)\n"
+        "        os._exit(3)\n"
+        "      os.kill(child, signal.SIGTERM)\n"
+        "      self.assertEqual(os.WTERMSIG(os.waitpid(child, 0)[1]), signal.SIGTERM)\n"
+    )
+    assert run(tmp_path, text).results() == {"test_arm.Arm.test_a": "passed"}
+
+
+def test_a_stop_request_reaches_a_test_that_forks(tmp_path: Path) -> None:
+    text = (
+        "  def tearDown(self): print('torn down', flush=True)\n"
+        "  def test_a(self):\n"
+        "    own = os.getpid()\n"
+        "    if os.fork() == 0:\n"
+        "      time.sleep(0.05)\n"
+        "      os.kill(own, signal.SIGTERM)\n"
+        "      os._exit(0)\n"
+        "    end = time.monotonic() + 50\n"
+        "    while time.monotonic() < end:\n"
+        "      child = os.fork()\n"
+        "      if child == 0:\n"
+        "        os._exit(0)\n"
+        "      os.waitpid(child, 0)\n"
+    )
+    host = run(tmp_path, text)
+    assert "torn down" in host.output
+    assert host.of("case-finished") == []
+
+
 def test_a_stop_request_tears_down(tmp_path: Path) -> None:
     write(
         tmp_path,
