@@ -117,7 +117,9 @@ def test_questions_of_two_workers_are_asked_one_after_the_other(bench: Bench) ->
     with bench.run("campaign.xml", "--workers", "2") as session:
         asked = []
         for _ in range(8):
-            label = session.expect(r"answer  (trial (\d) of 4, block \d)> ")
+            label = session.expect(r"question  (trial (\d) of 4, block \d)")
+            # A result of the other worker is followed by the prompt again.
+            session.expect(rf"answer  {label[1]}> ")
             asked.append(label[2])
             # Of `done` and `cannot`, or `yes` and `no`: trial 3 fails.
             is_outcome = asked.count(label[2]) == 2
