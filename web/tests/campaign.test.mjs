@@ -228,10 +228,12 @@ test('an episode of a batch opens its case, with only what was reported in it', 
     const guarded = await Guarded.open(browser, `${serve.origin}/#/campaigns/latest`);
     const { page } = guarded;
     const list = page.getByRole('region', { name: 'Episodes that did not pass' });
-    const cells = await list.locator('tbody tr').first().locator('td').allInnerTexts();
+    const failed = list.locator('tbody tr').first();
+    await failed.waitFor();
+    const cells = await failed.locator('td').allInnerTexts();
     const episode = cells[0].trim();
     const payload = /payload=([0-9.]+)/.exec(cells[3])[1];
-    await list.locator('tbody tr').first().getByRole('link').click();
+    await failed.getByRole('link').click();
     await guarded.see(`episode ${episode}`, '#detail section h2');
     assert.match(page.url(), /\/tests\/0\?attempt=1&case=\d+$/);
     const facts = page.getByRole('region', { name: 'Case', exact: true });
