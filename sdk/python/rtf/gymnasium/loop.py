@@ -54,6 +54,8 @@ class Loop:
 
     def _fill(self) -> bool:
         """Start episodes in free slots; whether any episode is open."""
+        if len(self._open) == self._slots.count:
+            return True
         while True:
             free = [slot for slot in range(self._slots.count) if slot not in self._open]
             taken = self._test.take(len(free), wait=not self._open) if free else []
@@ -131,6 +133,8 @@ class Loop:
 
     def _end_episodes(self) -> None:
         slots = self._slots
+        if not slots.may_have_ended(self._last_step):
+            return
         has_nan, errors = slots.has_nan(), slots.errors()
         is_over = slots.done | has_nan | np.isnan(slots.rewards) | (slots.steps >= self._last_step)
         is_over[list(errors)] = True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -84,6 +85,22 @@ class Slots:
     def hashes(self, slots: Iterable[int]) -> dict[int, str]:
         """Return the hashes of the present observations of slots."""
         return {slot: _digest.of(self.observation(slot)) for slot in slots}
+
+    def may_have_ended(self, last_step: float) -> bool:
+        """Whether any slot is done, has a problem, or has taken so many steps."""
+        return bool(
+            self.done.any()
+            or self.steps.max() >= last_step
+            or math.isnan(self.rewards.sum())
+            or _ERROR in self.infos
+            or self._may_have_nan()
+        )
+
+    def _may_have_nan(self) -> bool:
+        if isinstance(self.observations, np.ndarray):
+            # Three times as fast as the precise answer. It is NaN also for infinities of both signs.
+            return self.observations.dtype.kind == "f" and math.isnan(self.observations.sum())
+        return bool(self.has_nan().any())
 
     def has_nan(self) -> NDArray[np.bool_]:
         """Return which present observations contain a NaN: an array of the shape (slots,)."""
