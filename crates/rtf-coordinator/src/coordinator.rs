@@ -220,7 +220,10 @@ impl<'a, P: Pool> Coordinator<'a, P> {
         }
         // For example, the tear-down of a test that runs many episodes failed.
         if code == Some(exit::FAILED) && !is_explained {
-            let ending = format!("{ending} although all of its episodes passed");
+            let ending = match assignment.has_results {
+                true => format!("{ending} although all of its episodes passed"),
+                false => format!("{ending} before its first episode"),
+            };
             return Err(worker::failure(&ending, &outputs, |text| self.campaign.mask(text)));
         }
         Ok(())

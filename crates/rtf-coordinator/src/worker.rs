@@ -44,6 +44,9 @@ pub fn command(
     Ok(command)
 }
 
+/// Makes a worker start no hosts to check the plug-ins.
+pub const CHECKED: &str = "--checked";
+
 /// Who answers the questions of workers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answers {

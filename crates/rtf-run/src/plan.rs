@@ -54,7 +54,10 @@ pub fn plan_debugged(
     debug: Option<&DebugRequest>,
 ) -> Result<Planned, Failure> {
     let Draft { plan, total, shard_assignment, problems, sources } =
-        draft(request, |draft| verify::verify(draft, verify::DEFAULT_LIMIT));
+        draft(request, |draft| match request.is_checked && draft.is_complete() {
+            true => draft.unchecked(),
+            false => verify::verify(draft, verify::DEFAULT_LIMIT),
+        });
     let Some(mut plan) = plan else { return Err(diagnostics::refuse(&problems, &sources)) };
     set_repetition(&mut plan, &request.manifest);
     episodes::add(&mut plan, request)?;

@@ -23,6 +23,8 @@ pub struct LocalPool<'a> {
     most: usize,
     shutdown_timeout: Duration,
     answers: Answers,
+    /// Whether the plug-ins were checked just before.
+    is_checked: bool,
     next_worker: u32,
     workers: Vec<LocalWorker>,
 }
@@ -50,12 +52,27 @@ impl<'a> LocalPool<'a> {
         (shutdown_timeout, answers): (Duration, Answers),
     ) -> Self {
         let next_worker = dir.next_worker();
-        Self { dir, most, shutdown_timeout, answers, next_worker, workers: Vec::new() }
+        let (is_checked, workers) = (false, Vec::new());
+        Self { dir, most, shutdown_timeout, answers, is_checked, next_worker, workers }
     }
 
-    fn spawn(&self, number: u32, list: &Path) -> Result<(Child, WorkerLifeline), Failure> {
+    /// The plug-ins were checked just before: the first workers start no hosts for that.
+    #[must_use]
+    pub fn checked(self) -> Self {
+        Self { is_checked: true, ..self }
+    }
+
+    fn spawn(
+        &self,
+        number: u32,
+        list: &Path,
+        is_checked: bool,
+    ) -> Result<(Child, WorkerLifeline), Failure> {
         let options = (self.shutdown_timeout, self.answers);
         let mut command = worker::command_with_list(self.dir, number, list, options)?;
+        if is_checked {
+            command.arg(worker::CHECKED);
+        }
         if self.answers != Answers::Operator {
             let mut child = command.spawn().map_err(Failure::internal)?;
             let _open = child.stdin.take();
@@ -69,7 +86,7 @@ impl<'a> LocalPool<'a> {
 }
 
 impl Pool for LocalPool<'_> {
-    const POLL: Duration = Duration::from_millis(20);
+    const POLL: Duration = Duration::from_millis(5);
     const PRINTS: bool = false;
 
     fn free(&self) -> usize {
@@ -81,11 +98,12 @@ impl Pool for LocalPool<'_> {
     }
 
     async fn start(&mut self, lists: Vec<Vec<Episode>>) -> Result<(), Failure> {
+        let is_checked = std::mem::take(&mut self.is_checked);
         for episodes in lists {
             let number = self.next_worker;
             self.next_worker += 1;
             let list = self.dir.create_worker(number, &episodes)?;
-            let (child, lifeline) = self.spawn(number, &list)?;
+            let (child, lifeline) = self.spawn(number, &list, is_checked)?;
             let ids = episodes.iter().map(|episode| episode.id);
             self.workers.push(LocalWorker {
                 assignment: Assignment::new(self.dir, number, ids),

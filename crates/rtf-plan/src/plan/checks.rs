@@ -73,6 +73,10 @@ impl CheckGroup {
         self.files.iter().map(|entry| entry.file.as_path())
     }
 
+    pub(super) fn lists_cases(&self) -> bool {
+        self.framework.is_some()
+    }
+
     /// Returns the limit for one file; `usual` unless the host needs longer.
     #[must_use]
     pub fn limit(&self, usual: Duration) -> Duration {

@@ -44,6 +44,13 @@ impl PlanDraft {
         self.checks.groups()
     }
 
+    /// Whether the plan is the same without the hosts' answers, which are then only about problems:
+    /// they list the cases of other frameworks.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.check_groups().iter().all(|group| !group.lists_cases())
+    }
+
     /// Completes the plan with the hosts' answers: one list for each of
     /// [`PlanDraft::check_groups`], with one answer for each of its files.
     #[must_use]

@@ -90,6 +90,8 @@ pub struct TestsRequest {
     pub episode_stream: Option<EpisodeStream>,
     /// The number of slots of a test that runs many episodes, instead of that in its suite.
     pub slots: Option<u32>,
+    /// Whether the plug-ins were checked on this machine just before.
+    pub is_checked: bool,
     /// Problems that prevent nothing.
     pub warnings: Vec<Diagnostic>,
 }
@@ -106,6 +108,7 @@ impl TestsRequest {
             episodes: Vec::new(),
             episode_stream: None,
             slots: None,
+            is_checked: false,
             warnings: Vec::new(),
         }
     }

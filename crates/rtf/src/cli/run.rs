@@ -82,6 +82,10 @@ pub struct RunArgs {
     #[arg(value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub slots: Option<u32>,
 
+    /// Start no hosts to check the plug-ins: the campaign whose worker this is has done it here
+    #[arg(long, hide = true, requires = "episodes")]
+    pub checked: bool,
+
     /// List the selected tests without running them
     #[arg(help_heading = SELECTION, long)]
     pub dry_run: bool,

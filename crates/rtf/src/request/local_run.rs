@@ -147,7 +147,7 @@ fn attendance(args: &RunArgs) -> Attendance {
 
 /// The episodes of a campaign that `args` select.
 fn set_episodes(tests: &mut TestsRequest, args: &RunArgs) -> Result<(), Failure> {
-    tests.slots = args.slots;
+    (tests.slots, tests.is_checked) = (args.slots, args.checked);
     if args.episode.is_none() && args.episodes.is_none() {
         return Ok(());
     }

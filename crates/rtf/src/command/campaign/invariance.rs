@@ -147,7 +147,8 @@ impl Lab<'_> {
         let workers = if variation == Some(Variation::TwoWorkers) { 2 } else { 1 };
         let episodes = &self.loaded.episodes.episodes;
         let ledger = Ledger::new(episodes.len(), self.campaign.repeats);
-        let pool = LocalPool::new(&dir, workers, (self.args.shutdown_timeout, Answers::Nobody));
+        let pool =
+            LocalPool::new(&dir, workers, (self.args.shutdown_timeout, Answers::Nobody)).checked();
         let is_reversed = variation == Some(Variation::OtherOrder);
         let coordinator = Coordinator::new(self.campaign, episodes, ledger, pool)?;
         let signals = SignalListener::install().map_err(Failure::internal)?;

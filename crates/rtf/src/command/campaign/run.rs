@@ -152,6 +152,7 @@ async fn coordinate(started: &Started, args: &CampaignRunArgs) -> Result<Campaig
     let Some(settings) = &dir.description.jobs else {
         let answers = answers(args);
         let pool = LocalPool::new(dir, local_workers(args), (args.shutdown_timeout, answers));
+        let pool = if *is_resumed { pool } else { pool.checked() };
         let mut coordinator = Coordinator::new(campaign, episodes, read(&|_| true), pool)?;
         if answers == Answers::Operator {
             coordinator = coordinator.with_operator()?;
