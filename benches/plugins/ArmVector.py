@@ -16,10 +16,10 @@ class ArmVector(rtf.gymnasium.VectorTest):
         """One arm."""
         return arm_env()
 
-    def setup(self, args: list[str]) -> None:
+    def setup(self, args: list[str]) -> None:  # noqa: ARG002 - not needed
         """The loop without rtf computes them once, too."""
         self.actions = np.tile(GOAL, (self.slots, 1))
 
-    def act(self, observations: Any) -> Any:
+    def act(self, observations: Any) -> Any:  # noqa: ARG002 - always the same
         """The same for all slots."""
         return self.actions

@@ -98,7 +98,7 @@ class Slots:
 
     def _may_have_nan(self) -> bool:
         if isinstance(self.observations, np.ndarray):
-            # Three times as fast as the precise answer. It is NaN also for infinities of both signs.
+            # Faster than the precise answer, and NaN also for infinities of both signs.
             return self.observations.dtype.kind == "f" and math.isnan(self.observations.sum())
         return bool(self.has_nan().any())
 
