@@ -114,7 +114,7 @@ def test_the_other_mode_is_the_other_vector_environment(
         f"{LINE}{TEST}    asynchronous = {asynchronous}\n"
         "    def configure(self, envs, slot, episode):\n        self.report(type(envs).__name__)\n"
     )
-    kinds = ["SyncVectorEnv", "AsyncVectorEnv"]
+    kinds = ["GuardedVectorEnv", "AsyncVectorEnv"]
     for variable, expected in (("", asynchronous), ("other", not asynchronous)):
         monkeypatch.setenv("RTF_VECTOR_MODE", variable)
         runner = run_episodes(tmp_path, body, seeded(1), slots=1)
@@ -243,6 +243,8 @@ def test_vector_environments_that_are_refused(tmp_path: Path, envs: str, text: s
 
 
 BROKEN = """
+SEEDS = iter(range(100))
+
 class Broken(SyncVectorEnv):
     def __init__(self, slots):
         super().__init__([Line] * slots, autoreset_mode=AutoresetMode.DISABLED)
@@ -275,7 +277,7 @@ class Broken(SyncVectorEnv):
         ("seed[1] = 5", "pass",
          ("slot 1 ignores the seed: after a reset with 7, the observation is not that of the"
          " other slots")),
-        ("seed[0] = seed[2] = None", "pass",
+        ("seed[0] = seed[2] = next(SEEDS)", "pass",
          ("the slots 0, 2 ignore the seed: two resets with the same seed had different"
          " observations")),
     ],
@@ -627,3 +629,47 @@ def test_memory_does_not_grow(tmp_path: Path) -> None:
     runner = run_episodes(tmp_path, body, episodes, slots=8)
     assert runner.verdicts() == ["passed"] * 200
     assert sum(json.loads(runner.outside[-1][1]).values()) < 10
+
+
+def test_the_vector_environment_returns_what_that_of_gymnasium_does() -> None:
+    import gymnasium
+    import numpy as np
+    from gymnasium import spaces
+    from gymnasium.vector import AutoresetMode, SyncVectorEnv
+
+    from rtf.gymnasium.guarded_vector_env import GuardedVectorEnv
+
+    class Nested(gymnasium.Env):  # type: ignore[misc, type-arg, unused-ignore]
+        observation_space = spaces.Dict(
+            at=spaces.Box(-9, 9, (2,), np.float32),
+            parts=spaces.Tuple([spaces.Discrete(9), spaces.Box(0, 1, (), np.float64)]),
+        )
+        action_space = spaces.Box(-1, 1, (2,), np.float64)
+
+        def observe(self) -> Any:
+            self.observation_space.seed(int(self.np_random.integers(99)))
+            return self.observation_space.sample()
+
+        def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
+            super().reset(seed=seed)
+            self.steps = 0
+            return self.observe(), {"start": seed}
+
+        def step(self, action: Any) -> Any:
+            self.steps += 1
+            reward = float(self.np_random.normal())
+            info = {"late": {"reward": reward}, "text": "t"} if reward > 0 else {}
+            return self.observe(), reward + float(action[0]), self.steps == 4, reward > 1, info
+
+    def trace(kind: type[SyncVectorEnv]) -> list[Any]:
+        envs = kind([Nested] * 3, autoreset_mode=AutoresetMode.DISABLED)
+        found: list[Any] = [envs.reset(seed=[1, 2, 3])]
+        for _ in range(12):
+            found.append(envs.step(np.full((3, 2), 0.5)))
+            done = found[-1][2] | found[-1][3]
+            if done.any():
+                found.append(envs.reset(seed=[7, 8, 9], options={"reset_mask": done}))
+        return found
+
+    ours, theirs = trace(GuardedVectorEnv), trace(SyncVectorEnv)
+    assert repr(ours) == repr(theirs)

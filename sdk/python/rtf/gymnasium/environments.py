@@ -30,7 +30,9 @@ def make(
 ) -> vector.VectorEnv[Any, Any, Any]:
     """Create a vector environment of `slots` environments, each of them guarded."""
     _require_version()
-    from rtf.gymnasium.guarded_env import GuardedEnv  # noqa: PLC0415 - needs this version
+    # They need this version.
+    from rtf.gymnasium.guarded_env import GuardedEnv  # noqa: PLC0415
+    from rtf.gymnasium.guarded_vector_env import GuardedVectorEnv  # noqa: PLC0415
 
     def guarded(slot: int) -> GuardedEnv:
         env = make_env()
@@ -43,7 +45,7 @@ def make(
     if asynchronous:
         # The policy and the test cannot always be pickled.
         return vector.AsyncVectorEnv(functions, context="fork", autoreset_mode=mode)
-    return vector.SyncVectorEnv(functions, autoreset_mode=mode)
+    return GuardedVectorEnv(functions, autoreset_mode=mode)
 
 
 def _require_version() -> None:
