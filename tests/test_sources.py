@@ -25,7 +25,7 @@ SUITES = """
     tests/fixtures/*/suite.xml tests/frameworks/*/suite.xml tests/ctest/project/arm.xml
     tests/colcon/workspace/src/*/test/*.xml tests/fixtures/yarp/suites/*.xml
     tests/fixtures/ros1/*.xml tests/fixtures/clock/*.xml tests/fixtures/replay/*.xml
-    tests/fixtures/signals/*.xml tests/fixtures/proxies/*.xml
+    tests/fixtures/signals/*.xml tests/fixtures/proxies/*.xml tests/fixtures/ros2bag/*.xml
 """.split()
 """XML files in subdirectories of examples belong to the middleware."""
 

@@ -38,15 +38,17 @@ def attach(session: Session, path: str, name: str, media_type: str, **more: obje
 def copy(path: str, name: str, directory: str) -> str:
     """Copy a file into `directory` under a unique name, and return the copy's path.
 
-    A `name` without an extension gets that of the file.
+    A `name` without an extension gets that of the file. A `/` in it separates directories, for
+    files that belong together.
     """
-    os.makedirs(directory, exist_ok=True)
     if not os.path.splitext(name)[1]:
         name += os.path.splitext(path)[1]
-    safe = "".join(c if c.isalnum() or c in ".-_" else "_" for c in name)
+    safe = "".join(c if c.isalnum() or c in ".-_/" else "_" for c in name)
+    first, *others = [part for part in safe.split("/") if part.strip(".")] or ["_"]
     number = 1
     while True:
-        target = os.path.join(directory, f"{number}-{safe}")
+        target = os.path.join(directory, f"{number}-{first}", *others)
+        os.makedirs(os.path.dirname(target), exist_ok=True)
         try:
             output = open(target, "xb")  # noqa: SIM115 - closed below, in any case
         except FileExistsError:

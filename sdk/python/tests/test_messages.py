@@ -117,6 +117,23 @@ def test_a_file_is_attached_by_its_full_path(tmp_path: Path) -> None:
     assert ran.host.of("attached") == [expected]
 
 
+def test_attachments_that_belong_together_are_in_a_directory(tmp_path: Path) -> None:
+    for name in ("a.mcap", "metadata.yaml"):
+        (tmp_path / name).write_text(name)
+    names = ["bag/a.mcap", "bag/metadata.yaml", "bag/a.mcap", "../../..//x/../y", ".."]
+    body = "\n".join(f"self.attach('a.mcap', {name!r})" for name in names)
+    kept = tmp_path / "kept"
+    ran = run(tmp_path, arm(body), attachments_dir=str(kept))
+    paths = [os.path.relpath(one["path"], kept) for one in ran.host.of("attached")]
+    assert paths == [
+        "1-bag/a.mcap",
+        "1-bag/metadata.yaml",
+        "2-bag/a.mcap",
+        "1-x/y.mcap",
+        "1-...mcap",
+    ]
+
+
 def test_an_attachment_without_an_extension_gets_that_of_its_file(tmp_path: Path) -> None:
     (tmp_path / "plot.png").write_text("x")
     body = "self.attach('plot.png', 'arm 3')\nself.attach('plot.png', 'run.txt')"

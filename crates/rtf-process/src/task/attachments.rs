@@ -1,6 +1,6 @@
 //! Stores the files that a process attaches in the run's directory.
 
-use std::path::Path;
+use std::path::{Component, Path};
 
 use rtf_model::protocol::Notification;
 use rtf_model::{Attachment, Question};
@@ -28,11 +28,9 @@ impl ProcessTask {
         let dir = self.context.run_dir.join(relative);
         let working_dir = self.job.launch.request.working_dir.clone().unwrap_or_default();
         let source = working_dir.join(&attachment.path);
-        let is_copied = source.parent() == Some(dir.as_path());
-        let name = match (is_copied, source.file_name()) {
-            (true, Some(name)) => name.to_string_lossy().into_owned(),
-            _ => attachment.name.chars().map(replace_unsafe).collect(),
-        };
+        let copy = path_in(&dir, &source);
+        let is_copied = copy.is_some();
+        let name = copy.unwrap_or_else(|| attachment.name.chars().map(replace_unsafe).collect());
         let reported_path = attachment.path.clone();
         let attachment =
             Attachment { path: format!("{relative}/{name}"), omitted: false, ..attachment };
@@ -134,10 +132,39 @@ impl ProcessTask {
     }
 }
 
+/// The path of a file relative to a directory that contains it.
+fn path_in(dir: &Path, file: &Path) -> Option<String> {
+    let path = file.strip_prefix(dir).ok()?;
+    let is_inside = path.components().all(|part| matches!(part, Component::Normal(_)));
+    (is_inside && path.file_name().is_some()).then(|| path.to_string_lossy().into_owned())
+}
+
 pub(super) fn replace_unsafe(character: char) -> char {
     if character.is_alphanumeric() || matches!(character, '.' | '-' | '_') {
         character
     } else {
         '_'
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::path_in;
+
+    #[test]
+    fn only_files_below_a_directory_have_a_path_in_it() {
+        let found = |file: &str| path_in(Path::new("/run/attachments"), Path::new(file));
+        assert_eq!(found("/run/attachments/1-a.txt").as_deref(), Some("1-a.txt"));
+        assert_eq!(
+            found("/run/attachments/1-bag/metadata.yaml").as_deref(),
+            Some("1-bag/metadata.yaml")
+        );
+        for outside in
+            ["/run/attachments", "/run/attachments/../events.jsonl", "/run/a.txt", "a.txt"]
+        {
+            assert_eq!(found(outside), None, "{outside}");
+        }
     }
 }
