@@ -25,6 +25,14 @@ DEBIAN = "/usr/bin/python3"
 """Debian's rospy belongs to Debian's Python, which needs the library `mcap`, too."""
 
 REPLAY = "live.replay"
+MCAP = "-few.mcap"
+"""What the test sampled."""
+OWN = {
+    "ros1": ("bag", ".bag"),
+    "ros2": ("live.replay", "few_0.mcap"),
+    "yarp": ("dump", ".tar.gz"),
+}
+"""The suite that plays the middleware's own format, and the ending of its files."""
 VERDICTS = {"few": "passed", "none": "failed"}
 # The node computes the same numbers from the same numbers.
 VALUE_TOLERANCE = 1e-12
@@ -45,12 +53,12 @@ class Scene:
     def __init__(self, rtf: str, middleware: str, directory: Path) -> None:
         self.rtf, self.middleware, self.directory = rtf, middleware, directory
         self.is_ros = middleware == "ros1"
-        self.answer = "/smooth" if self.is_ros else "/threshold/smooth:o"
-        self.own_suite = "bag" if self.is_ros else "dump"
+        self.answer = "/threshold/smooth:o" if middleware == "yarp" else "/smooth"
+        self.own_suite, ending = OWN[middleware]
         self.live = self.start("live")
         self.finish(self.live, VERDICTS)
-        self.mcap = attached(self.live, "few", ".mcap")
-        self.own = attached(self.live, "few", ".bag" if self.is_ros else ".tar.gz")
+        self.mcap = attached(self.live, "few", MCAP)
+        self.own = attached(self.live, "few", ending)
         self.recorded = series(self.mcap)
 
     def start(self, suite: str, recording: str = "", name: str = "", *options: str) -> Run:
@@ -73,7 +81,7 @@ class Scene:
         run = self.start(suite, str(file), file.name, f"--set=messages={complete}")
         run.wait()
         expect("verdicts", set(run.attempts()) <= {"passed", "failed"}, True)
-        got = series(attached(run, "few", ".mcap"))
+        got = series(attached(run, "few", MCAP))
         expect("played messages", len(got["/level"]), complete)
         notes = [str(event) for event in run.events("message") if "is incomplete" in str(event)]
         expect("reports of a torn recording", len(notes), 1)
@@ -81,7 +89,7 @@ class Scene:
 
     def expect_same(self, run: Run, *, with_times: bool = False) -> None:
         """The first test has the same inputs and outputs as with the live source."""
-        got = series(attached(run, "few", ".mcap"))
+        got = series(attached(run, "few", MCAP))
         for name, expected in self.recorded.items():
             expect(f"number of {name}", len(got[name]), len(expected))
             pairs = list(zip(got[name], expected, strict=True))
@@ -101,6 +109,7 @@ class Scene:
     scope="module",
     params=[
         pytest.param("ros1", marks=pytest.mark.middleware("ros1")),
+        pytest.param("ros2", marks=pytest.mark.middleware("ros2")),
         pytest.param("yarp", marks=pytest.mark.middleware("yarp")),
     ],
 )
@@ -115,7 +124,7 @@ def scene(
         patch.syspath_prepend(packages(venv("mcap")))
         if request.param == "ros1":
             patch.setenv("PYTHONPATH", library_for_debian())
-        else:
+        elif request.param == "yarp":
             patch.setenv("PATH", str(venv("mcap")), prepend=":")
         for name in ("ROS_HOME", "YARP_CONFIG_HOME"):
             patch.setenv(name, str(directory / "home"))
@@ -136,7 +145,9 @@ def test_the_command_for_a_failed_test_repeats_the_failure(scene: Scene) -> None
     (line,) = [line for line in lines if line.startswith("    replay ")]
     words = shlex.split(line)[1:]
     expect("command", words[:2], ["rtf", "run"])
-    expect("its recording", words[-1], f"recording={attached(scene.live, 'none', '.mcap')}")
+    endings = ["-none.mcap", *(["none_0.mcap"] if scene.middleware == "ros2" else [])]
+    recordings = [f"recording={attached(scene.live, 'none', ending)}" for ending in endings]
+    expect(f"one of the recordings: {words[-1]}", words[-1] in recordings, True)
     repeated = Run(scene.rtf, words[2], scene.directory / "command.run", *words[3:])
     scene.finish(repeated, {"none": "failed"})
 
@@ -159,7 +170,7 @@ def test_each_message_waits_for_the_answer_before(scene: Scene) -> None:
 
 
 def test_a_recording_in_the_format_of_the_middleware_is_played(scene: Scene) -> None:
-    run = scene.start(scene.own_suite, f"{scene.own} --rate 4")
+    run = scene.start(scene.own_suite, f"{scene.own} --rate 4", "its own format")
     scene.finish(run, VERDICTS)
     scene.expect_same(run)
     if scene.is_ros:

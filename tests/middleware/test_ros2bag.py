@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -13,13 +12,13 @@ import pytest
 from checkout import ROOT, output_of, venv
 from pages import run_fixture_page
 from processes import MARK, commands, kill, running, select
+from ros2_packages import shadow
 from run import Run, expect, expect_in
 
 pytestmark = [pytest.mark.middleware("ros2"), pytest.mark.usefixtures("home")]
 SUITES = ROOT / "tests/fixtures/ros2bag"
 READER = ROOT / "tests/middleware/ros2_bags.py"
 ALL = {"/arm/left/colour", "/clock", "/count", "/map", "/scan", "/state"}
-CHANGED = "RIHS01_" + "0" * 64
 
 
 @pytest.fixture(autouse=True)
@@ -155,26 +154,6 @@ def test_a_type_that_is_not_the_installed_one_is_refused(
     expect_in(f"/state is left out: {reason}", notes(run))
     (bag,) = bags(run)
     expect("others are recorded", ALL - set(content(bag)["topics"]), {"/state"})
-
-
-def shadow(directory: Path, *, is_known: bool) -> Path:
-    """A package of messages in place of the installed one: empty, or with another definition."""
-    directory.mkdir()
-    package = directory / "lifecycle_msgs"
-    if not is_known:
-        package.mkdir()
-        (package / "__init__.py").touch()
-        return directory
-    prefix = venv("ros2").parent
-    (installed,) = prefix.glob("lib/python3*/site-packages/lifecycle_msgs")
-    package.symlink_to(installed)
-    definition = directory / "share/lifecycle_msgs/msg/State.json"
-    shutil.copytree(prefix / "share/lifecycle_msgs/msg", definition.parent)
-    description = json.loads(definition.read_text())
-    for each in description["type_hashes"]:
-        each["hash_string"] = CHANGED
-    definition.write_text(json.dumps(description))
-    return directory
 
 
 def test_a_full_disk_is_a_collapse(
