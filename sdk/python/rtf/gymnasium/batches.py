@@ -22,12 +22,11 @@ def row(space: spaces.Space[Any], batch: Any, slot: int) -> Any:
 
 def rows_with_nan(space: spaces.Space[Any], batch: Any, slots: int) -> NDArray[np.bool_]:
     """Return which observations contain a number that is NaN: an array of the shape (slots,)."""
+    found = np.zeros(slots, np.bool_)
     if space.shape is not None and space.dtype is not None:
         if np.issubdtype(space.dtype, np.inexact):
-            return np.isnan(batch).reshape(slots, -1).any(axis=1)  # type: ignore[no-any-return]
-        return np.zeros(slots, np.bool_)
-    found = np.zeros(slots, np.bool_)
-    if isinstance(space, spaces.Dict):
+            found |= np.isnan(batch).reshape(slots, -1).any(axis=1)
+    elif isinstance(space, spaces.Dict):
         for name, one in space.spaces.items():
             found |= rows_with_nan(one, batch[name], slots)
     elif isinstance(space, spaces.Tuple):
