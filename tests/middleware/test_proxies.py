@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import os
+import statistics
 from pathlib import Path
 
 import pytest
@@ -126,14 +127,16 @@ def test_the_time_of_the_robot_jumps(rtf: str, tmp_path: Path) -> None:
     start, end = fault(run, "back")
     expect("the time of the suite continues", 0.9 < end - start < 1.5, True)
     robot = signals(run, "jump")["robot"]
-    # Times of samples are those of the suite, so this is the difference of both clocks.
-    behind = [(at, value - at - (robot[0][1] - robot[0][0])) for at, value in robot]
+    # Times of samples are those of the suite, so this is the difference of both clocks. On a busy
+    # machine, single messages arrive late.
+    usual = statistics.median(value - at for at, value in robot if at < start - MARGIN_SECS)
+    behind = [(at, value - at - usual) for at, value in robot]
     wrong = [at for at, difference in behind if difference < JUMP_SECS / 2]
     expect("the robot is behind", len(wrong) > 30, True)
     limits = start - MARGIN_SECS < wrong[0] < wrong[-1] < end + MARGIN_SECS
     expect("only during the fault", limits, True)
     right = [difference for at, difference in behind if at > end + MARGIN_SECS]
-    expect("right after it", max(map(abs, right)) < MARGIN_SECS, True)
+    expect("right after it", abs(statistics.median(right)) < MARGIN_SECS, True)
 
 
 def fault(run: Run, name: str) -> tuple[float, float]:
