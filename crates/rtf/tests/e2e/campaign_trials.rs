@@ -115,7 +115,9 @@ fn betrays(text: &str) -> bool {
 /// The report of the campaign, from a server.
 fn served(folder: &Folder) -> Value {
     let server = Web::start(folder, &["serve", "--web", "127.0.0.1:0"]);
-    get(server.address, "/api/v1/campaigns/latest").json()
+    let report = get(server.address, "/api/v1/campaigns/latest").json();
+    server.end("TERM");
+    report
 }
 
 fn blinded() -> Folder {
