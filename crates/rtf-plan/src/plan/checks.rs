@@ -73,6 +73,7 @@ impl CheckGroup {
         self.files.iter().map(|entry| entry.file.as_path())
     }
 
+    /// Whether the answers list cases, and not only problems.
     pub(super) fn lists_cases(&self) -> bool {
         self.framework.is_some()
     }

@@ -44,8 +44,8 @@ impl PlanDraft {
         self.checks.groups()
     }
 
-    /// Whether the plan is the same without the hosts' answers, which are then only about problems:
-    /// they list the cases of other frameworks.
+    /// Whether the plan is the same without the hosts' answers: those about other frameworks list
+    /// their cases, the others only problems.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.check_groups().iter().all(|group| !group.lists_cases())

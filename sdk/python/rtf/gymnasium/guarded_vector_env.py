@@ -12,9 +12,8 @@ from gymnasium.vector import utils
 class GuardedVectorEnv(vector.SyncVectorEnv):  # type: ignore[misc, unused-ignore]
     """Guarded environments, which do not reset by themselves.
 
-    Gymnasium writes each result into arrays and examines the mode of resets for each environment:
-    with 64 environments that take 6 µs a step, this takes a tenth of the time less, with the
-    guards.
+    Gymnasium examines the mode of resets and writes into five arrays for each environment. Without
+    that, 64 environments whose steps take 6 µs need a tenth less time, in spite of the guards.
     """
 
     def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
