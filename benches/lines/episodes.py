@@ -141,7 +141,7 @@ def arm_works(bench: Bench, directory: Path, kind: str) -> list[Work]:
 
 def bare_seconds(bench: Bench, command: list[str]) -> float:
     """The time of a loop whose episodes must all pass."""
-    launched = bench.launch(command, settings=environment(bench))
+    launched = bench.launch(command)
     if f"{ARM_EPISODES} passed" not in launched.output:
         raise MeasuringError(f"the loop printed `{launched.output}`")
     return launched.seconds
@@ -173,7 +173,7 @@ def campaign_seconds(bench: Bench, directory: Path, suite: tuple[str, str], epis
     def seconds() -> float:
         shutil.rmtree(results, ignore_errors=True)
         # With one episode, the claim is not decided.
-        launched = bench.launch([*command, str(results)], codes=(0, 6), settings=environment(bench))
+        launched = bench.launch([*command, str(results)], codes=(0, 6), settings=environment())
         found = results / "campaigns/latest/results.jsonl"
         expect_in(found, episodes, '"outcome":"passed"')
         return launched.seconds
@@ -186,14 +186,9 @@ def least(seconds: Callable[[], float]) -> float:
     return min(seconds() for _ in range(REPEATS))
 
 
-def environment(bench: Bench) -> dict[str, str]:
-    """The Python with the packages, which keeps what it has compiled, as it does by default."""
-    cache = str(bench.directory / "pycache")
-    return {
-        "RTF_PYTHON": python(),
-        "PYTHONDONTWRITEBYTECODE": "",
-        "PYTHONPYCACHEPREFIX": cache,
-    }
+def environment() -> dict[str, str]:
+    """The Python with the packages."""
+    return {"RTF_PYTHON": python()}
 
 
 def python() -> str:
